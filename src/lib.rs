@@ -1,0 +1,1 @@
+//! irradia: a headless Vulkan engine for global illumination.
