@@ -1,1 +1,4 @@
 //! irradia: a headless Vulkan engine for global illumination.
+
+pub mod renderer;
+pub mod scene;

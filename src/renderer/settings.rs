@@ -1,0 +1,387 @@
+//! Settings: which method fills each slot, and the options of every piece, addressed as `piece.key`.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::slots::Slot;
+
+/// A setting that does not exist or does not take the value given. One sentence: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// No technique of this name.
+    #[error("there is no technique {0:?}; techniques: {known}", known = Technique::names().join(", "))]
+    UnknownTechnique(String),
+    /// No preset of this name.
+    #[error("there is no preset {0:?}; presets: draft, default, high, paper")]
+    UnknownPreset(String),
+    /// The slot has no method of this name.
+    #[error("the {slot} slot has no method {method:?}; its methods: {known}")]
+    UnknownMethod {
+        /// The slot asked for.
+        slot: Slot,
+        /// The method asked for.
+        method: String,
+        /// The methods there are.
+        known: String,
+    },
+    /// No setting of this name.
+    #[error("there is no setting {key:?}; settings: {known}")]
+    UnknownKey {
+        /// The key asked for.
+        key: String,
+        /// The keys there are.
+        known: String,
+    },
+    /// The value is of the wrong kind or outside its range.
+    #[error("setting {key} cannot be {value:?}: {reason}")]
+    BadValue {
+        /// The setting.
+        key: String,
+        /// The value given.
+        value: String,
+        /// What it takes.
+        reason: String,
+    },
+}
+
+/// A named set of methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Technique {
+    /// Direct light alone: shadow maps, no indirect light.
+    Direct,
+    /// Reflective shadow maps (Dachsbacher & Stamminger 2005): VPLs gathered at every pixel, without visibility.
+    Rsm,
+}
+
+impl Technique {
+    /// All techniques.
+    pub const ALL: [Technique; 2] = [Technique::Direct, Technique::Rsm];
+
+    /// The name used on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Technique::Direct => "direct",
+            Technique::Rsm => "rsm",
+        }
+    }
+
+    /// The names of all techniques.
+    pub fn names() -> Vec<&'static str> {
+        Technique::ALL.map(Technique::name).to_vec()
+    }
+
+    /// The technique called `name`.
+    pub fn from_name(name: &str) -> Result<Technique, SettingsError> {
+        let found = Technique::ALL.into_iter().find(|technique| technique.name() == name);
+        found.ok_or_else(|| SettingsError::UnknownTechnique(name.to_owned()))
+    }
+
+    /// The methods that make up the technique.
+    pub fn methods(self) -> Methods {
+        let none = Methods { direct: DirectMethod::ShadowMap, diffuse: DiffuseMethod::None, caustics: CausticsMethod::None, specular: SpecularMethod::None };
+        match self {
+            Technique::Direct => none,
+            Technique::Rsm => Methods { diffuse: DiffuseMethod::Rsm, ..none },
+        }
+    }
+}
+
+/// A trade of time against error, fixed per method by measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
+    /// Fast, for looking around.
+    Draft,
+    /// The default.
+    #[default]
+    Default,
+    /// Slower, closer to the truth.
+    High,
+    /// The settings of the method's paper.
+    Paper,
+}
+
+impl Preset {
+    /// All presets.
+    pub const ALL: [Preset; 4] = [Preset::Draft, Preset::Default, Preset::High, Preset::Paper];
+
+    /// The name used on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Preset::Draft => "draft",
+            Preset::Default => "default",
+            Preset::High => "high",
+            Preset::Paper => "paper",
+        }
+    }
+
+    /// The preset called `name`.
+    pub fn from_name(name: &str) -> Result<Preset, SettingsError> {
+        let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
+        found.ok_or_else(|| SettingsError::UnknownPreset(name.to_owned()))
+    }
+}
+
+macro_rules! methods {
+    ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $text:literal),* $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum $name { $($(#[$variant_doc])* #[serde(rename = $text)] $variant),* }
+
+        impl $name {
+            /// The names of all methods of the slot.
+            pub const NAMES: &[&str] = &[$($text),*];
+
+            /// The name used on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $($name::$variant => $text),* }
+            }
+
+            fn from_name(name: &str) -> Option<Self> {
+                match name { $($text => Some($name::$variant),)* _ => None }
+            }
+        }
+    };
+}
+
+methods! {
+    /// How the `direct` slot is filled.
+    DirectMethod {
+        /// Not at all.
+        None = "none",
+        /// Filtered, normal-offset shadow maps.
+        ShadowMap = "shadow-map",
+    }
+}
+methods! {
+    /// How the `diffuse` slot is filled.
+    DiffuseMethod {
+        /// Not at all.
+        None = "none",
+        /// Reflective shadow maps: VPLs gathered at every pixel.
+        Rsm = "rsm",
+    }
+}
+methods! {
+    /// How the `caustics` slot is filled.
+    CausticsMethod {
+        /// Not at all.
+        None = "none",
+    }
+}
+methods! {
+    /// How the `specular` slot is filled.
+    SpecularMethod {
+        /// Not at all.
+        None = "none",
+    }
+}
+
+/// The method of each slot. `emission` has no choice: it is what the surfaces emit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Methods {
+    /// The method of the `direct` slot.
+    pub direct: DirectMethod,
+    /// The method of the `diffuse` slot.
+    pub diffuse: DiffuseMethod,
+    /// The method of the `caustics` slot.
+    pub caustics: CausticsMethod,
+    /// The method of the `specular` slot.
+    pub specular: SpecularMethod,
+}
+
+impl Methods {
+    /// The name of the method that fills `slot`; `surface` for emission.
+    pub fn name_of(&self, slot: Slot) -> &'static str {
+        match slot {
+            Slot::Emission => "surface",
+            Slot::Direct => self.direct.name(),
+            Slot::Diffuse => self.diffuse.name(),
+            Slot::Caustics => self.caustics.name(),
+            Slot::Specular => self.specular.name(),
+        }
+    }
+
+    /// Chooses the method of one slot by name.
+    pub fn set(&mut self, slot: Slot, method: &str) -> Result<(), SettingsError> {
+        let unknown = |known: &[&str]| SettingsError::UnknownMethod { slot, method: method.to_owned(), known: known.join(", ") };
+        match slot {
+            Slot::Emission => return Err(unknown(&["surface"])),
+            Slot::Direct => self.direct = DirectMethod::from_name(method).ok_or_else(|| unknown(DirectMethod::NAMES))?,
+            Slot::Diffuse => self.diffuse = DiffuseMethod::from_name(method).ok_or_else(|| unknown(DiffuseMethod::NAMES))?,
+            Slot::Caustics => self.caustics = CausticsMethod::from_name(method).ok_or_else(|| unknown(CausticsMethod::NAMES))?,
+            Slot::Specular => self.specular = SpecularMethod::from_name(method).ok_or_else(|| unknown(SpecularMethod::NAMES))?,
+        }
+        Ok(())
+    }
+}
+
+/// What stands for the scene's lights, and the resolution of their views.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LightSettings {
+    /// Side of a spot, directional or point-face light view, in texels; 16 to 4096.
+    pub resolution: u32,
+    /// Cosine emitters that stand for all emissive surfaces together; 0 to 256.
+    pub emitter_samples: u32,
+    /// Side of an emitter sample's hemicube top, in texels; 16 to 1024.
+    pub emitter_resolution: u32,
+    /// Directional lights that stand for a `--sky`; 1 to 256.
+    pub sky_samples: u32,
+}
+
+/// Shadow-map filtering of the `shadow-map` direct method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShadowSettings {
+    /// Half width of the percentage-closer filter, in texels of the light view; 0 (one bilinear tap) to 4.
+    pub filter_radius: u32,
+    /// Offset of the receiver along its normal, in texel widths at the receiver; 0 to 16.
+    pub normal_offset: f32,
+}
+
+/// Options of the `rsm` diffuse method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RsmSettings {
+    /// VPLs gathered at every pixel, shared among the lights by reflected flux; 0 to 65536. Cost: linear.
+    pub vpls: u32,
+}
+
+/// Everything that decides how a frame is made, apart from the scene, the view and the size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The technique that the methods come from, before any was replaced.
+    pub technique: Technique,
+    /// The preset that the options come from, before any was changed.
+    pub preset: Preset,
+    /// The method of each slot.
+    pub methods: Methods,
+    /// What stands for the lights.
+    pub lights: LightSettings,
+    /// Shadow-map filtering.
+    pub shadow: ShadowSettings,
+    /// Options of the `rsm` method.
+    pub rsm: RsmSettings,
+}
+
+impl Settings {
+    /// The settings of `technique` at `preset`.
+    pub fn new(technique: Technique, preset: Preset) -> Settings {
+        let lights = LightSettings { resolution: 512, emitter_samples: 8, emitter_resolution: 128, sky_samples: 16 };
+        let default = Settings {
+            technique,
+            preset,
+            methods: technique.methods(),
+            lights,
+            shadow: ShadowSettings { filter_radius: 1, normal_offset: 1.5 },
+            rsm: RsmSettings { vpls: 256 },
+        };
+        let lights = default.lights.clone();
+        match preset {
+            Preset::Default => default,
+            Preset::Draft => Settings {
+                lights: LightSettings { resolution: 256, emitter_samples: 4, emitter_resolution: 64, sky_samples: 8 },
+                rsm: RsmSettings { vpls: 64 },
+                ..default
+            },
+            Preset::High => Settings {
+                lights: LightSettings { resolution: 1024, emitter_samples: 32, emitter_resolution: 256, sky_samples: 64 },
+                shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
+                rsm: RsmSettings { vpls: 1024 },
+                ..default
+            },
+            // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel.
+            Preset::Paper => Settings { lights: LightSettings { resolution: 512, ..lights }, rsm: RsmSettings { vpls: 400 }, ..default },
+        }
+    }
+
+    /// All settings that `set` takes, as `piece.key`.
+    pub fn keys(&self) -> Vec<String> {
+        let mut keys = Vec::new();
+        for (piece, options) in self.pieces() {
+            keys.extend(options.keys().map(|key| format!("{piece}.{key}")));
+        }
+        keys
+    }
+
+    /// Sets `piece.key` to a value written as on the command line.
+    ///
+    /// # Errors
+    /// An unknown key lists the known ones; a bad value says what the setting takes.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingsError> {
+        let bad = |reason: String| SettingsError::BadValue { key: key.to_owned(), value: value.to_owned(), reason };
+        let mut document = serde_json::to_value(&*self).map_err(|error| bad(error.to_string()))?;
+        let known = self.keys();
+        let place = key.split_once('.').filter(|_| known.iter().any(|name| name == key));
+        let place = place.and_then(|(piece, option)| document.get_mut(piece)?.get_mut(option));
+        let Some(place) = place else {
+            return Err(SettingsError::UnknownKey { key: key.to_owned(), known: known.join(", ") });
+        };
+        *place = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
+        let changed: Settings = serde_json::from_value(document).map_err(|error| bad(error.to_string()))?;
+        changed.check(key).map_err(bad)?;
+        *self = changed;
+        Ok(())
+    }
+
+    /// The options of every piece as one JSON object, `{"lights": {…}, …}`.
+    pub fn options(&self) -> Map<String, Value> {
+        self.pieces().into_iter().map(|(piece, options)| (piece, Value::Object(options))).collect()
+    }
+
+    fn pieces(&self) -> Vec<(String, Map<String, Value>)> {
+        let Ok(Value::Object(document)) = serde_json::to_value(self) else { return Vec::new() };
+        let choices = ["technique", "preset", "methods"];
+        let pieces = document.into_iter().filter(|(name, _)| !choices.contains(&name.as_str()));
+        pieces.filter_map(|(name, value)| if let Value::Object(options) = value { Some((name, options)) } else { None }).collect()
+    }
+
+    fn check(&self, key: &str) -> Result<(), String> {
+        let within = |value: u32, low: u32, high: u32| {
+            if (low..=high).contains(&value) { Ok(()) } else { Err(format!("it takes {low} to {high}")) }
+        };
+        match key {
+            "lights.resolution" => within(self.lights.resolution, 16, 4096),
+            "lights.emitter_samples" => within(self.lights.emitter_samples, 0, 256),
+            "lights.emitter_resolution" => within(self.lights.emitter_resolution, 16, 1024),
+            "lights.sky_samples" => within(self.lights.sky_samples, 1, 256),
+            "shadow.filter_radius" => within(self.shadow.filter_radius, 0, 4),
+            "shadow.normal_offset" if !(0.0..=16.0).contains(&self.shadow.normal_offset) => Err("it takes 0 to 16".to_owned()),
+            "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_can_be_set_to_its_own_value() {
+        let mut settings = Settings::new(Technique::Rsm, Preset::Default);
+        let before = settings.clone();
+        for key in settings.keys() {
+            let (piece, option) = key.split_once('.').expect("keys have a piece");
+            let value = settings.options()[piece][option].to_string();
+            settings.set(&key, &value).expect("its own value is within its range");
+        }
+        assert_eq!(settings, before);
+    }
+
+    #[test]
+    fn wrong_settings_say_what_would_be_right() {
+        let mut settings = Settings::new(Technique::Rsm, Preset::Default);
+        let unknown = settings.set("rsm.vlps", "3").expect_err("no such key").to_string();
+        assert!(unknown.contains("rsm.vpls"), "{unknown}");
+        let range = settings.set("lights.resolution", "5").expect_err("too small").to_string();
+        assert!(range.contains("16 to 4096"), "{range}");
+        assert!(settings.set("rsm.vpls", "many").is_err());
+        assert!(settings.set("methods.diffuse", "rsm").is_err());
+        settings.set("rsm.vpls", "512").expect("within its range");
+        assert_eq!(settings.rsm.vpls, 512);
+    }
+}

@@ -1,0 +1,47 @@
+//! Slots: the parts of the light at the first visible surface. They add up to the image.
+
+use serde::{Deserialize, Serialize};
+
+/// One part of the light that leaves the first visible surface x towards the eye. With D and S an event in the
+/// diffuse or the specular lobe, L the light, E the eye:
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Slot {
+    /// L E: the surface itself emits; also the sky where no surface is.
+    Emission,
+    /// L (D|S) E: from the lights, shadowed.
+    Direct,
+    /// L (D|S)* D D E: the last vertex before x scattered diffusely, x's diffuse lobe answers.
+    Diffuse,
+    /// L (D|S)* S D E: the last vertex before x scattered specularly, x's diffuse lobe answers.
+    Caustics,
+    /// L (D|S)+ S E: x's specular lobe answers to anything but the lights themselves.
+    Specular,
+}
+
+impl Slot {
+    /// All slots, in the order in which images list them.
+    pub const ALL: [Slot; 5] = [Slot::Emission, Slot::Direct, Slot::Diffuse, Slot::Caustics, Slot::Specular];
+
+    /// The name used in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Slot::Emission => "emission",
+            Slot::Direct => "direct",
+            Slot::Diffuse => "diffuse",
+            Slot::Caustics => "caustics",
+            Slot::Specular => "specular",
+        }
+    }
+
+    /// The slot called `name`, if there is one.
+    pub fn from_name(name: &str) -> Option<Slot> {
+        Slot::ALL.into_iter().find(|slot| slot.name() == name)
+    }
+}
+
+impl std::fmt::Display for Slot {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
