@@ -523,10 +523,10 @@ def cornell_empty(s):
     s.light("lamp", "point", (0, 1.45, 0.1), intensity=3.0)
 
 
-@scene("cornell-spot", "Cornell box with a spot light on the red wall: most of the picture is indirect light")
+@scene("cornell-spot", "Cornell box with a spot light on the floor by the red wall: most of the picture is indirect light")
 def cornell_spot(s):
     cornell(s)
-    s.light("spot", "spot", (-0.05, 1.9, 0.35), (-1.0, 0.95, 0.1), intensity=14.0, cone=(25, 35))
+    s.light("spot", "spot", (0.3, 1.9, 0.95), (-0.75, 0.1, 0.85), intensity=22.0, cone=(25, 35))
 
 
 @scene("cornell-panel", "Cornell box lit by an emissive ceiling panel alone: emission as a light")
@@ -552,7 +552,7 @@ def ring_room(s):
 def ring(s):
     _, gold = ring_room(s)
     s.add("ring", metal_band(0.55, 0.6, 0.34, 96), gold)
-    s.light("spot", "spot", (-1.0, 1.75, -1.3), (0.05, 0.1, 0.05), intensity=24.0, cone=(18, 26))
+    s.light("spot", "spot", (-1.0, 1.8, -1.3), (0.1, 0, 0.1), intensity=17.0, cone=(27, 35))
     s.camera("camera", (0.75, 1.75, 1.75), (0, 0.12, -0.05), 42)
 
 
@@ -566,9 +566,9 @@ def ring_occluded(s):
     colours = [RED, GREEN, SAND, BLUE]
     for i, colour in enumerate(colours):
         z = 1.02 + 0.14 * i
-        s.add(f"screen {i + 1}", box((-1.0 + 0.1 * i, 0, z), (0.12 + 0.1 * i, 1.0 + 0.06 * i, z + 0.03), without=["-y"]),
+        s.add(f"screen {i + 1}", box((-1.0 + 0.1 * i, 0, z), (0.12 + 0.1 * i, 1.12 + 0.06 * i, z + 0.03), without=["-y"]),
               s.diffuse(f"screen {i + 1}", colour))
-    s.light("spot", "spot", (-1.0, 2.05, -1.3), (0.05, 0.4, 0.05), intensity=24.0, cone=(18, 26))
+    s.light("spot", "spot", (-1.0, 2.1, -1.3), (0.1, 0.3, 0.1), intensity=17.0, cone=(27, 35))
     s.camera("camera", (0.55, 1.9, 1.85), (-0.02, 0.42, 0), 46)
 
 
@@ -601,8 +601,8 @@ def water(s):
         "KHR_materials_volume": {"thicknessFactor": 1},
     })
     s.add("water", height_field((-2.02, -1.52), (2.02, 1.52), (64, 64), waves), sheet_of_water)
-    s.light("low spot", "spot", (-1.85, 1.6, 0), (0.45, 1.0, 0), intensity=110.0, cone=(6, 7.5))
-    s.light("ceiling lamp", "point", (-0.3, 2.4, 0.1), intensity=2.0)
+    s.light("low spot", "spot", (-1.85, 1.6, 0), (-0.77, 1.0, 0), intensity=45.0, cone=(18, 20))
+    s.light("ceiling lamp", "point", (-0.3, 2.4, 0.1), intensity=1.5)
     s.camera("above", (-1.7, 2.3, 1.1), (1.3, 0.95, -0.35), 62)
     s.camera("under", (-1.8, 0.75, 1.25), (1.0, 0.05, -0.5), 68)
 
@@ -620,7 +620,7 @@ def corridor(s):
                            solid=lambda cell: cell.x > 0.8 and cell.z > 0.8))
     s.add("crate", box((-0.25, 0, -0.25), (0.25, 0.5, 0.25), without=["-y"]), s.diffuse("blue", BLUE),
           at=(-0.4, 0, 1.9), rotation=turn((0, 1, 0), 25))
-    s.light("lamp", "point", (2.9, 1.5, 0), intensity=20.0)
+    s.light("lamp", "point", (2.9, 1.5, 0), intensity=15.0)
     s.camera("camera", (0.15, 1.45, 4.2), (-0.02, 1.1, 0), 58)
 
 
@@ -639,10 +639,10 @@ def two_rooms(s):
     s.add("rooms", cave([-3.05, -0.05, 0.05, 3.05], [0, 2, 2.5], [-1.5, -0.45, 0.45, 1.5], paint,
                         solid=lambda cell: abs(cell.x) < 0.05 and (cell.y > 2 or abs(cell.z) > 0.45)))
     s.add("door", box((-0.02, 0.01, 0.0), (0.02, 1.99, 0.88)), s.diffuse("door", (0.55, 0.33, 0.16)),
-          at=(-0.06, 0, -0.44), rotation=turn((0, 1, 0), -42))
+          at=(-0.06, 0, -0.44), rotation=turn((0, 1, 0), -58))
     s.add("block", box((-0.25, 0, -0.25), (0.25, 0.5, 0.25), without=["-y"]), white,
           at=(-1.75, 0, 0.75), rotation=turn((0, 1, 0), 30))
-    s.light("lamp", "point", (1.55, 1.8, 0.55), intensity=10.0)
+    s.light("lamp", "point", (1.55, 1.8, 0.55), intensity=16.0)
     s.camera("camera", (-2.9, 1.5, 1.2), (-0.3, 1.0, -0.2), 60)
 
 
@@ -670,8 +670,8 @@ def leak(s):
                      ("hall", (-1.4, 0, 0.6))):
         s.add(f"block {name}", box((-0.22, 0, -0.22), (0.22, 0.7, 0.22), without=["-y"]), block,
               at=at, rotation=turn((0, 1, 0), 20))
-    s.light("lamp 1", "point", (-1.5, 1.7, -1.9), intensity=6.0)
-    s.light("lamp 2", "point", (-0.9, 1.7, 2.6), intensity=6.0)
+    s.light("lamp 1", "point", (-1.5, 1.7, -1.9), intensity=4.5)
+    s.light("lamp 2", "point", (-0.9, 1.7, 2.6), intensity=4.5)
     s.camera("thin", (2.2, 1.6, -1.6), (0.1, 1.0, -2.6), 70)
     s.camera("thick", (2.2, 1.6, 0.8), (0.5, 1.0, -0.3), 70)
     s.camera("sealed", (1.75, 1.7, 3.5), (0.7, 0.8, 2.2), 75)
@@ -725,16 +725,16 @@ def maze(s):
             return colours[2 * (i > size) + (k > size)] if 1 < i < 2 * size + 1 and 1 < k < 2 * size + 1 else white
         return floor if side == "-y" else white
 
-    s.add("maze", cave(hall, [0, height, 10], hall, paint, solid=lambda cell: is_wall(*cell[:3])))
+    s.add("maze", cave(hall, [0, height, 12], hall, paint, solid=lambda cell: is_wall(*cell[:3])))
     body = [[(0.2, 0, 1, 0), (0.2, 1.1, 1, 0)], arc(0, 1.1, 0.2, 0, 90, 4)]
     for name, colour, (x, z) in (("first", (0.75, 0.3, 0.1), (-2.25, 2.25)), ("second", (0.1, 0.35, 0.6), (3.75, -0.75))):
         person = s.node(f"{name} person", at=(x, 0, z))
         clothes = s.diffuse(f"{name} person", colour)
         s.add(f"{name} body", lathe(body, 16), clothes, parent=person)
         s.add(f"{name} head", sphere(0.14, 16), s.diffuse(f"{name} head", (0.75, 0.55, 0.42)), parent=person, at=(0, 1.46, 0))
-    s.light("warm lamp", "point", (-2.25, 1.6, 0.75), intensity=14.0, colour=(1, 0.8, 0.55))
-    s.light("cool lamp", "point", (3.75, 1.6, 2.25), intensity=14.0, colour=(0.65, 0.82, 1))
-    s.camera("camera", (0, 9.4, 9.4), (0, 0, 0.5), 56)
+    s.light("warm lamp", "point", (-2.25, 2.6, 0.75), intensity=30.0, colour=(1, 0.8, 0.55))
+    s.light("cool lamp", "point", (3.75, 2.6, -2.25), intensity=30.0, colour=(0.65, 0.82, 1))
+    s.camera("camera", (0, 10.6, 8.6), (0, 0, 0.55), 52)
 
 
 @scene("animated", "Two seconds of motion (60 frames): a moving light, a turning and a hopping object, a moving camera")
@@ -750,7 +750,7 @@ def animated(s):
     s.add("post", box((-0.1, 0, -0.1), (0.1, 0.8, 0.1)), s.diffuse("blue", BLUE), parent=carousel, at=(0.55, 0.05, 0))
     ball = s.add("ball", sphere(0.2, 24), white, at=(0.0, 0.9, -0.2))
     torus_node = s.add("torus", torus(0.28, 0.08, 32, 12), s.diffuse("sand", SAND), at=(-0.85, 1.3, -0.9))
-    lamp = s.light("lamp", "point", (0.7, 1.9, 0.2), intensity=3.0)
+    lamp = s.light("lamp", "point", (0.7, 1.9, 0.2), intensity=5.0)
     eyes = [(0.5 * math.sin(a), 1.35 + 0.1 * math.sin(a), 1.8) for a in angles]
     camera = s.camera("camera", eyes[0], (0, 0.85, -0.3), 58)
     s.animate("two seconds", seconds, [
@@ -783,8 +783,8 @@ def textured(s):
           at=(0.75, 1.62, 0.35), rotation=look((1.3, 2.2, 0.9), (-0.35, 0.45, -0.75)))
     hue = lambda angle, y: tuple(0.5 + 0.35 * math.cos(angle - turn_by) + 0.4 * y for turn_by in (0, 2.1, 4.2))
     s.add("ball", sphere(0.35, 32, hue), s.diffuse("vertex colours", (1, 1, 1)), at=(-0.35, 0.35, -0.65))
-    s.light("spot", "spot", (1.3, 2.2, 0.9), (-0.35, 0.45, -0.75), intensity=26.0, cone=(22, 30))
-    s.light("fill", "point", (-1.0, 1.7, 0.9), intensity=0.8)
+    s.light("spot", "spot", (1.3, 2.2, 0.9), (-0.35, 0.45, -0.75), intensity=36.0, cone=(22, 30))
+    s.light("fill", "point", (-1.0, 1.7, 0.9), intensity=1.2)
     s.camera("camera", (-0.55, 1.45, 1.6), (0.05, 0.85, -0.8), 62)
 
 
@@ -801,13 +801,14 @@ def lights(s):
 
     s.add("room with a skylight", cave([-2, -1.3, -0.3, 2], [0, 2.6, 2.9], [-2, -1.0, 0.0, 2], paint,
                                        solid=lambda cell: cell.y > 2.6 and (cell.i, cell.k) != (1, 1)))
-    s.add("column", box((-0.2, 0, -0.2), (0.2, 1.5, 0.2), without=["-y"]), white, at=(-0.1, 0, -1.1), rotation=turn((0, 1, 0), 35))
+    s.add("column", box((-0.2, 0, -0.2), (0.2, 1.5, 0.2), without=["-y"]), white, at=(-1.2, 0, -1.1),
+          rotation=turn((0, 1, 0), 35))
     s.add("block", box((-0.3, 0, -0.3), (0.3, 0.6, 0.3), without=["-y"]), s.diffuse("sand", SAND),
-          at=(-1.15, 0, 0.2), rotation=turn((0, 1, 0), 15))
-    s.add("globe", sphere(0.16, 24), s.diffuse("globe", (0, 0, 0), emission=5.0), at=(1.35, 0.9, 0.2))
-    s.light("lamp", "point", (0.6, 1.9, -1.2), intensity=0.8, colour=(1, 0.9, 0.75))
-    s.light("spot", "spot", (1.7, 2.4, 0.6), (0.6, 0.0, -0.5), intensity=7.0, cone=(16, 24))
-    s.light("sun", "directional", (0, 6, 0), (-0.25, 0, 0.9), intensity=4.0, colour=(1, 0.95, 0.85))
+          at=(1.15, 0, -0.75), rotation=turn((0, 1, 0), 15))
+    s.add("globe", sphere(0.16, 24), s.diffuse("globe", (0, 0, 0), emission=5.0), at=(1.15, 0.76, -0.75))
+    s.light("lamp", "point", (0.4, 1.8, -0.9), intensity=1.5, colour=(1, 0.9, 0.75))
+    s.light("spot", "spot", (1.6, 2.3, 0.8), (-0.8, 1.15, -2.0), intensity=24.0, cone=(16, 24))
+    s.light("sun", "directional", (0, 6, 0), (2.0, 0, 0.5), intensity=8.0, colour=(1, 0.95, 0.85))
     s.camera("camera", (0.3, 1.6, 1.9), (-0.05, 0.9, -1.0), 66)
 
 
