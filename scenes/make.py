@@ -543,7 +543,7 @@ def furnace(s):
 
 def ring_room(s):
     """The closed room of both ring scenes, and its metals."""
-    white, left, right = s.diffuse("white", WHITE), s.diffuse("ochre", OCHRE), s.diffuse("blue", BLUE)
+    white, left, right = s.diffuse("white", WHITE), s.diffuse("ochre", OCHRE), s.diffuse("sand", SAND)
     s.add("room", cave([-2, 2], [0, 2.6], [-2, 2], lambda side, cell: {"-x": left, "+x": right}.get(side, white)))
     return white, s.material("gold", GOLD, metallic=1, roughness=0.05)
 
@@ -551,9 +551,9 @@ def ring_room(s):
 @scene("ring", "Metal ring on a diffuse floor under a spot light, after Quyen 4.1.1: the caustic inside the ring")
 def ring(s):
     _, gold = ring_room(s)
-    s.add("ring", metal_band(0.55, 0.6, 0.34, 96), gold)
-    s.light("spot", "spot", (-1.0, 1.8, -1.3), (0.1, 0, 0.1), intensity=17.0, cone=(27, 35))
-    s.camera("camera", (0.75, 1.75, 1.75), (0, 0.12, -0.05), 42)
+    s.add("ring", metal_band(0.55, 0.6, 0.27, 96), gold)
+    s.light("spot", "spot", (-1.75, 1.25, -0.75), (0.15, 0, 0.05), intensity=15.0, cone=(19, 27))
+    s.camera("camera", (0.35, 1.85, 1.55), (0.03, 0.05, -0.02), 42)
 
 
 @scene("ring-occluded", "The ring on two platforms behind four screens, after Quyen 4.1.2: more surfaces lie over each "
@@ -562,14 +562,14 @@ def ring_occluded(s):
     white, gold = ring_room(s)
     s.add("lower platform", box((-0.95, 0, -0.95), (0.95, 0.15, 0.95), without=["-y"]), white)
     s.add("upper platform", box((-0.75, 0.15, -0.75), (0.75, 0.3, 0.75), without=["-y"]), white)
-    s.add("ring", metal_band(0.55, 0.6, 0.34, 96), gold, at=(0, 0.3, 0))
+    s.add("ring", metal_band(0.55, 0.6, 0.27, 96), gold, at=(0, 0.3, 0))
     colours = [RED, GREEN, SAND, BLUE]
     for i, colour in enumerate(colours):
         z = 1.02 + 0.14 * i
         s.add(f"screen {i + 1}", box((-1.0 + 0.1 * i, 0, z), (0.12 + 0.1 * i, 1.12 + 0.06 * i, z + 0.03), without=["-y"]),
               s.diffuse(f"screen {i + 1}", colour))
-    s.light("spot", "spot", (-1.0, 2.1, -1.3), (0.1, 0.3, 0.1), intensity=17.0, cone=(27, 35))
-    s.camera("camera", (0.55, 1.9, 1.85), (-0.02, 0.42, 0), 46)
+    s.light("spot", "spot", (-1.75, 1.55, -0.75), (0.15, 0.3, 0.05), intensity=15.0, cone=(19, 27))
+    s.camera("camera", (0.35, 2.15, 1.8), (0.0, 0.4, 0.05), 44)
 
 
 def waves(x, z):
@@ -601,10 +601,10 @@ def water(s):
         "KHR_materials_volume": {"thicknessFactor": 1},
     })
     s.add("water", height_field((-2.02, -1.52), (2.02, 1.52), (64, 64), waves), sheet_of_water)
-    s.light("low spot", "spot", (-1.85, 1.6, 0), (-0.77, 1.0, 0), intensity=45.0, cone=(18, 20))
+    s.light("low spot", "spot", (-1.85, 1.6, 0), (-0.5, 1.0, 0), intensity=38.0, cone=(13, 15))
     s.light("ceiling lamp", "point", (-0.3, 2.4, 0.1), intensity=1.5)
     s.camera("above", (-1.7, 2.3, 1.1), (1.3, 0.95, -0.35), 62)
-    s.camera("under", (-1.8, 0.75, 1.25), (1.0, 0.05, -0.5), 68)
+    s.camera("under", (-1.0, 0.8, 1.3), (0.6, 0.0, -0.35), 68)
 
 
 @scene("corridor", "L-shaped corridor lit from the end of its other leg: light that comes round the corner")
@@ -642,7 +642,7 @@ def two_rooms(s):
           at=(-0.06, 0, -0.44), rotation=turn((0, 1, 0), -58))
     s.add("block", box((-0.25, 0, -0.25), (0.25, 0.5, 0.25), without=["-y"]), white,
           at=(-1.75, 0, 0.75), rotation=turn((0, 1, 0), 30))
-    s.light("lamp", "point", (1.55, 1.8, 0.55), intensity=16.0)
+    s.light("lamp", "point", (1.55, 1.8, 0.55), intensity=12.0)
     s.camera("camera", (-2.9, 1.5, 1.2), (-0.3, 1.0, -0.2), 60)
 
 
