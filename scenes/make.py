@@ -101,34 +101,34 @@ class Mesh:
 SIDES = {"-x": (0, -1), "+x": (0, 1), "-y": (1, -1), "+y": (1, 1), "-z": (2, -1), "+z": (2, 1)}
 
 
-def rectangle(lo, hi, axis, facing):
-    """The corners of an axis-aligned rectangle (lo[axis] == hi[axis]), counter-clockwise seen from where it faces."""
+def face(lo, hi, side, inwards=False):
+    """The corners of one side of a box, counter-clockwise seen from outside the box, or from inside it."""
+    axis, sign = SIDES[side]
     b, c = (axis + 1) % 3, (axis + 2) % 3
     corners = []
     for from_b, from_c in ((lo, lo), (hi, lo), (hi, hi), (lo, hi)):
-        corner = [lo[axis]] * 3
+        corner = list(hi if sign > 0 else lo)
         corner[b], corner[c] = from_b[b], from_c[c]
         corners.append(tuple(corner))
-    return corners if facing > 0 else corners[::-1]
+    return corners if (sign > 0) != inwards else corners[::-1]
 
 
 def box(lo, hi, without=()):
     """A box seen from outside; `without` names sides to leave out, such as the one it stands on."""
     mesh = Mesh()
-    for side, (axis, sign) in SIDES.items():
+    for side in SIDES:
         if side not in without:
-            plane = (hi if sign > 0 else lo)[axis]
-            at = lambda p: tuple(plane if i == axis else p[i] for i in range(3))
-            mesh.quad(*(mesh.vertex(p) for p in rectangle(at(lo), at(hi), axis, sign)))
+            mesh.quad(*(mesh.vertex(p) for p in face(lo, hi, side)))
     return mesh
 
 
-def sheet(origin, u, v):
-    """A flat rectangle that faces u × v, with texture coordinates: u to the right of the picture, v upwards in it."""
+def sheet(origin, u, v, textured=True):
+    """A flat rectangle that faces u × v; u points to the right of its picture, v upwards in it."""
     mesh = Mesh()
     corners = []
     for s, t in ((0, 0), (1, 0), (1, 1), (0, 1)):
-        corners.append(mesh.vertex(tuple(o + s * a + t * b for o, a, b in zip(origin, u, v)), uv=(s, 1 - t)))
+        position = tuple(o + s * a + t * b for o, a, b in zip(origin, u, v))
+        corners.append(mesh.vertex(position, uv=(s, 1 - t) if textured else None))
     mesh.quad(*corners)
     return mesh
 
@@ -169,10 +169,8 @@ def cave(xs, ys, zs, paint, solid=lambda cell: False):
             neighbour = tuple(index[a] + (sign if a == axis else 0) for a in range(3))
             material = None if is_free(neighbour) else paint(side, cell(index))
             if material is not None:
-                plane = (hi if sign > 0 else lo)[axis]
-                at = lambda p: tuple(plane if i == axis else p[i] for i in range(3))
                 mesh = parts.setdefault(material, Mesh())
-                mesh.quad(*(mesh.vertex(p) for p in rectangle(at(lo), at(hi), axis, -sign)))
+                mesh.quad(*(mesh.vertex(p) for p in face(lo, hi, side, inwards=True)))
     return parts
 
 
@@ -193,8 +191,7 @@ def lathe(runs, segments, colour=None):
             rows.append(row)
         for low, high in zip(rows, rows[1:]):
             for s in range(segments):
-                at = lambda row, segment: row[segment % len(row)]
-                mesh.quad(at(low, s), at(low, s + 1), at(high, s + 1), at(high, s))
+                mesh.quad(*(row[at % len(row)] for row, at in ((low, s), (low, s + 1), (high, s + 1), (high, s))))
     return mesh
 
 
@@ -523,7 +520,7 @@ def cornell_empty(s):
     s.light("lamp", "point", (0, 1.45, 0.1), intensity=3.0)
 
 
-@scene("cornell-spot", "Cornell box with a spot light on the floor by the red wall: most of the picture is indirect light")
+@scene("cornell-spot", "Cornell box with a spot light on the floor by the red wall: most of the picture is indirect")
 def cornell_spot(s):
     cornell(s)
     s.light("spot", "spot", (0.3, 1.9, 0.95), (-0.75, 0.1, 0.85), intensity=22.0, cone=(25, 35))
@@ -534,7 +531,7 @@ def cornell_panel(s):
     cornell(s, panel=s.diffuse("panel", (0, 0, 0), emission=16.0))
 
 
-@scene("furnace", "Closed white furnace, albedo 0.5 and emission 1 everywhere: the radiance is 1/(1 - 0.5) = 2 everywhere")
+@scene("furnace", "Closed white furnace, albedo 0.5 and emission 1: the radiance is 1/(1 - 0.5) = 2 everywhere")
 def furnace(s):
     wall = s.diffuse("wall", GREY, emission=1.0)
     s.add("furnace", cave([-1, 1], [0, 2], [-1, 1], lambda side, cell: wall))
@@ -552,7 +549,7 @@ def ring_room(s):
 def ring(s):
     _, gold = ring_room(s)
     s.add("ring", metal_band(0.55, 0.6, 0.27, 96), gold)
-    s.light("spot", "spot", (-1.75, 1.25, -0.75), (0.15, 0, 0.05), intensity=15.0, cone=(19, 27))
+    s.light("spot", "spot", (-1.75, 1.25, -0.75), (0.15, 0, 0.05), intensity=14.0, cone=(24, 32))
     s.camera("camera", (0.35, 1.85, 1.55), (0.03, 0.05, -0.02), 42)
 
 
@@ -568,7 +565,7 @@ def ring_occluded(s):
         z = 1.02 + 0.14 * i
         s.add(f"screen {i + 1}", box((-1.0 + 0.1 * i, 0, z), (0.12 + 0.1 * i, 1.12 + 0.06 * i, z + 0.03), without=["-y"]),
               s.diffuse(f"screen {i + 1}", colour))
-    s.light("spot", "spot", (-1.75, 1.55, -0.75), (0.15, 0.3, 0.05), intensity=15.0, cone=(19, 27))
+    s.light("spot", "spot", (-1.75, 1.55, -0.75), (0.15, 0.3, 0.05), intensity=14.0, cone=(24, 32))
     s.camera("camera", (0.35, 2.15, 1.8), (0.0, 0.4, 0.05), 44)
 
 
@@ -727,11 +724,12 @@ def maze(s):
 
     s.add("maze", cave(hall, [0, height, 12], hall, paint, solid=lambda cell: is_wall(*cell[:3])))
     body = [[(0.2, 0, 1, 0), (0.2, 1.1, 1, 0)], arc(0, 1.1, 0.2, 0, 90, 4)]
-    for name, colour, (x, z) in (("first", (0.75, 0.3, 0.1), (-2.25, 2.25)), ("second", (0.1, 0.35, 0.6), (3.75, -0.75))):
+    skin = s.diffuse("skin", (0.75, 0.55, 0.42))
+    for name, colour, (x, z) in (("first", (0.75, 0.3, 0.1), (-2.25, 2.25)),
+                                 ("second", (0.1, 0.35, 0.6), (3.75, -0.75))):
         person = s.node(f"{name} person", at=(x, 0, z))
-        clothes = s.diffuse(f"{name} person", colour)
-        s.add(f"{name} body", lathe(body, 16), clothes, parent=person)
-        s.add(f"{name} head", sphere(0.14, 16), s.diffuse(f"{name} head", (0.75, 0.55, 0.42)), parent=person, at=(0, 1.46, 0))
+        s.add(f"{name} body", lathe(body, 16), s.diffuse(f"{name} clothes", colour), parent=person)
+        s.add(f"{name} head", sphere(0.14, 16), skin, parent=person, at=(0, 1.46, 0))
     s.light("warm lamp", "point", (-2.25, 2.6, 0.75), intensity=30.0, colour=(1, 0.8, 0.55))
     s.light("cool lamp", "point", (3.75, 2.6, -2.25), intensity=30.0, colour=(0.65, 0.82, 1))
     s.camera("camera", (0, 10.6, 8.6), (0, 0, 0.55), 52)
@@ -814,7 +812,7 @@ def lights(s):
 
 @scene("plane", "Point light of 2 pi W/sr 1 m above a plane of albedo 0.5: the radiance is cos(angle)/distance²")
 def plane(s):
-    s.add("plane", sheet((-100, 0, 100), (200, 0, 0), (0, 0, -200)), s.diffuse("plane", GREY))
+    s.add("plane", sheet((-100, 0, 100), (200, 0, 0), (0, 0, -200), textured=False), s.diffuse("plane", GREY))
     s.light("lamp", "point", (0, 1, 0), intensity=tidy(2 * math.pi))
     s.camera("camera", (0, 2.4, 2.4), (0, 0, 0.1), 45)
 
