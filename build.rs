@@ -1,2 +1,105 @@
-//! Build script.
-fn main() {}
+//! Compiles `glsl/` to SPIR-V and generates the typed Rust side of every program (`src/shaders.rs` includes it).
+//!
+//! `glsl/<piece>/<pass>.<stage>`; files of the same stem are the stages of one program. `glsl/lib/` holds includes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::exit;
+use std::{env, fs};
+
+#[path = "build/generate.rs"]
+mod generate;
+#[path = "build/reflect.rs"]
+mod reflect;
+
+use generate::{CompiledStage, Program};
+use shaderc::{CompileOptions, Compiler, EnvVersion, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
+
+fn main() {
+    println!("cargo::rerun-if-changed=glsl");
+    println!("cargo::rerun-if-changed=build");
+    let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    if let Err(message) = build(Path::new("glsl"), &out_dir) {
+        for line in message.lines() {
+            println!("cargo::error={line}");
+        }
+        exit(1);
+    }
+}
+
+fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
+    let compiler = Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))?;
+    let mut programs: BTreeMap<(String, String), Program> = BTreeMap::new();
+    for path in shader_files(root)? {
+        let part = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
+        let (piece, pass) = (part(path.parent().and_then(Path::file_name)), part(path.file_stem()));
+        let (kind, stage_kind) = match part(path.extension()).as_str() {
+            "comp" => ("Compute", ShaderKind::Compute),
+            "vert" => ("Vertex", ShaderKind::Vertex),
+            "geom" => ("Geometry", ShaderKind::Geometry),
+            "frag" => ("Fragment", ShaderKind::Fragment),
+            _ => continue,
+        };
+        let source = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let words = compile(&compiler, root, &path, &source, stage_kind)?;
+        let stage = reflect::reflect(&words).map_err(|error| format!("{}: {error}", path.display()))?;
+        let spirv_path = out_dir.join(format!("{piece}.{pass}.{}.spv", part(path.extension())));
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        fs::write(&spirv_path, bytes).map_err(|error| format!("{}: {error}", spirv_path.display()))?;
+        let new = || Program { piece: piece.clone(), pass: pass.clone(), summary: String::new(), stages: Vec::new() };
+        let program = programs.entry((piece.clone(), pass.clone())).or_insert_with(new);
+        if program.summary.is_empty() || stage_kind == ShaderKind::Fragment {
+            program.summary = summary(&source).unwrap_or_else(|| format!("`glsl/{piece}/{pass}`."));
+        }
+        program.stages.push(CompiledStage { kind, spirv_path, stage });
+    }
+    let mut programs: Vec<Program> = programs.into_values().collect();
+    for program in &mut programs {
+        program.stages.sort_by_key(|stage| ["Vertex", "Geometry", "Fragment", "Compute"].iter().position(|kind| *kind == stage.kind));
+    }
+    let source = generate::generate(&programs)?;
+    fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
+}
+
+/// All shader files below `root`, in a fixed order, without the includes.
+fn shader_files(root: &Path) -> Result<Vec<PathBuf>, String> {
+    let list = |folder: &Path| -> Result<Vec<PathBuf>, String> {
+        let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        paths.sort();
+        Ok(paths)
+    };
+    let mut files = Vec::new();
+    for folder in list(root)?.into_iter().filter(|path| path.is_dir() && !path.ends_with("lib")) {
+        files.extend(list(&folder)?.into_iter().filter(|path| path.is_file()));
+    }
+    Ok(files)
+}
+
+/// glslang's message already names file and line.
+fn compile(compiler: &Compiler, root: &Path, path: &Path, source: &str, kind: ShaderKind) -> Result<Vec<u32>, String> {
+    let mut options = CompileOptions::new().map_err(|error| format!("shaderc gave no options: {error}"))?;
+    options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
+    options.set_target_spirv(SpirvVersion::V1_6);
+    options.set_warnings_as_errors();
+    options.set_include_callback(|name, _, from, _| {
+        let path = root.join(name);
+        let content = fs::read_to_string(&path).map_err(|error| format!("{from} includes {}: {error}", path.display()))?;
+        Ok(ResolvedInclude { resolved_name: path.display().to_string(), content })
+    });
+    let compiled = compiler.compile_into_spirv(source, kind, &path.display().to_string(), "main", Some(&options));
+    compiled.map(|artifact| artifact.as_binary().to_vec()).map_err(|error| match error {
+        shaderc::Error::CompilationError(_, log) => log,
+        other => format!("{}: {other}", path.display()),
+    })
+}
+
+/// The first sentence of the comment that a shader starts with.
+fn summary(source: &str) -> Option<String> {
+    let lines = source.lines().skip_while(|line| !line.trim_start().starts_with("//"));
+    let comment: Vec<&str> = lines.take_while(|line| line.trim_start().starts_with("//")).map(|line| line.trim().trim_start_matches('/').trim()).collect();
+    let text = comment.join(" ");
+    let end = text.find(". ").map_or(text.len(), |end| end + 1);
+    let sentence = text[..end].trim().replace('[', "\\[").replace(']', "\\]").replace('<', "\\<");
+    (!sentence.is_empty()).then_some(sentence)
+}

@@ -1,0 +1,231 @@
+//! Writes the Rust side of every program: a struct with one named, typed field per binding, the push constants, the
+//! structs shared with the host.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use crate::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
+
+/// A stage of a program, and where its SPIR-V lies.
+pub struct CompiledStage {
+    pub kind: &'static str,
+    pub spirv_path: PathBuf,
+    pub stage: Stage,
+}
+
+/// All stages of one program, merged.
+pub struct Program {
+    pub piece: String,
+    pub pass: String,
+    pub summary: String,
+    pub stages: Vec<CompiledStage>,
+}
+
+/// The source of the generated module.
+///
+/// # Errors
+/// Says which program contradicts itself or another one.
+pub fn generate(programs: &[Program]) -> Result<String, String> {
+    let mut structs: BTreeMap<String, Struct> = BTreeMap::new();
+    for program in programs {
+        for stage in &program.stages {
+            for (name, found) in &stage.stage.structs {
+                match structs.get(name) {
+                    Some(known) if known != found => {
+                        return Err(format!("struct {name} in glsl/{}/{} differs from the one of the same name elsewhere", program.piece, program.pass));
+                    }
+                    Some(_) => {}
+                    None => drop(structs.insert(name.clone(), found.clone())),
+                }
+            }
+        }
+    }
+    let mut out = String::from("// Generated from the SPIR-V by build.rs.\n");
+    out.push_str("/// Structs that host and shaders share, as the shaders lay them out.\npub mod types {\n");
+    for shared in structs.values() {
+        write_struct(&mut out, &shared.name, &shared.fields, &structs, "A struct shared with the shaders.")?;
+    }
+    out.push_str("}\n");
+    let mut pieces: BTreeMap<&str, Vec<&Program>> = BTreeMap::new();
+    for program in programs {
+        pieces.entry(&program.piece).or_default().push(program);
+    }
+    for (piece, programs) in pieces {
+        writeln!(out, "/// The programs of `glsl/{piece}/`.\npub mod {piece} {{\nuse super::types;\nuse crate::graph::bindings::*;\nuse crate::vulkan::program as vp;").ok();
+        for program in programs {
+            write_program(&mut out, program, &structs).map_err(|error| format!("glsl/{piece}/{}: {error}", program.pass))?;
+        }
+        out.push_str("}\n");
+    }
+    Ok(out)
+}
+
+fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String, Struct>) -> Result<(), String> {
+    let name = camel(&program.pass);
+    let mut bindings: Vec<Binding> = Vec::new();
+    let mut push: Option<Struct> = None;
+    let mut constants: Vec<Constant> = Vec::new();
+    let mut local_size = [1; 3];
+    for CompiledStage { kind, stage, .. } in &program.stages {
+        if *kind == "Compute" {
+            local_size = stage.local_size;
+        }
+        for binding in &stage.bindings {
+            match bindings.iter().find(|known| (known.set, known.binding) == (binding.set, binding.binding)) {
+                Some(known) if known != binding => return Err(format!("{} and {} share a binding", known.name, binding.name)),
+                Some(_) => {}
+                None => bindings.push(binding.clone()),
+            }
+        }
+        if let Some(block) = &stage.push {
+            if push.as_ref().is_some_and(|known| known != block) {
+                return Err("its stages declare different push constants".to_owned());
+            }
+            push = Some(block.clone());
+        }
+        constants.extend(stage.constants.iter().filter(|constant| !constants.iter().any(|known| known.id == constant.id)).cloned().collect::<Vec<_>>());
+    }
+    bindings.sort_by_key(|binding| (binding.set, binding.binding));
+    let push_size = push.as_ref().map_or(0, |push| push.fields.iter().map(|field| field.offset + size_of(&field.ty, structs)).max().unwrap_or(0));
+    if push_size > 128 {
+        return Err(format!("its push constants take {push_size} bytes; every device offers 128"));
+    }
+    if let Some(push) = &push {
+        write_struct(out, &format!("{name}Push"), &push.fields, structs, &format!("Push constants of [`{name}`]."))?;
+    }
+    write_table(out, program, &name, &bindings, &constants, local_size, push_size);
+    write_bindings(out, &name, &program.summary, 0, &bindings, push.is_some(), &constants, structs);
+    if bindings.iter().any(|binding| binding.set == 1) {
+        write_bindings(out, &format!("{name}Material"), "What a material binds for its draws.", 1, &bindings, false, &[], structs);
+    }
+    Ok(())
+}
+
+fn write_table(out: &mut String, program: &Program, name: &str, bindings: &[Binding], constants: &[Constant], local_size: [u32; 3], push_size: u32) {
+    writeln!(out, "static {}: vp::Program = vp::Program {{ name: \"{}/{}\", stages: &[", screaming(name), program.piece, program.pass).ok();
+    for (index, stage) in program.stages.iter().enumerate() {
+        writeln!(out, "vp::Stage {{ kind: vp::StageKind::{}, spirv: vp::Spirv(include_bytes!({:?})) }},", stage.kind, stage.spirv_path.display().to_string()).ok();
+        debug_assert!(index < 3);
+    }
+    writeln!(out, "], bindings: &[").ok();
+    for binding in bindings {
+        let kind = match &binding.kind {
+            BindingKind::SampledImage(dim) => format!("SampledImage(vp::ImageDim::{})", dim_name(*dim)),
+            BindingKind::StorageImage { dim, .. } => format!("StorageImage(vp::ImageDim::{})", dim_name(*dim)),
+            BindingKind::TexelBuffer => "TexelBuffer".to_owned(),
+            BindingKind::Uniform(_) => "Uniform".to_owned(),
+            BindingKind::Storage { .. } => "Storage".to_owned(),
+        };
+        writeln!(out, "vp::Binding {{ name: {:?}, set: {}, binding: {}, kind: vp::BindingKind::{kind} }},", binding.name, binding.set, binding.binding).ok();
+    }
+    let constants: Vec<String> = constants.iter().map(|constant| constant.id.to_string()).collect();
+    writeln!(out, "], push_size: {push_size}, constants: &[{}], local_size: {local_size:?} }};", constants.join(", ")).ok();
+}
+
+#[allow(clippy::too_many_arguments, reason = "one generated item, every argument a part of it")]
+fn write_bindings(
+    out: &mut String,
+    name: &str,
+    summary: &str,
+    set: u32,
+    bindings: &[Binding],
+    push: bool,
+    constants: &[Constant],
+    structs: &BTreeMap<String, Struct>,
+) {
+    let _ = structs;
+    let fields: Vec<&Binding> = bindings.iter().filter(|binding| binding.set == set).collect();
+    writeln!(out, "/// {summary}\n#[derive(Clone, Debug)]\npub struct {name} {{").ok();
+    for field in &fields {
+        writeln!(out, "/// Binding {} of set {set}.\npub {}: {},", field.binding, field.name, handle(&field.kind)).ok();
+    }
+    for constant in constants {
+        writeln!(out, "/// Specialisation constant {}.\npub {}: {},", constant.id, constant.name.to_lowercase(), rust_type(&constant.ty, "")).ok();
+    }
+    if push {
+        writeln!(out, "/// Push constants.\npub push: {name}Push,").ok();
+    }
+    let table = screaming(name.strip_suffix("Material").filter(|_| set == 1).unwrap_or(name));
+    writeln!(out, "}}\nimpl BindingSet for {name} {{\nconst PROGRAM: &'static vp::Program = &{table};\nconst SET: u32 = {set};").ok();
+    writeln!(out, "fn visit(&self, visitor: &mut dyn FnMut(u32, Access)) {{").ok();
+    for field in &fields {
+        writeln!(out, "visitor({}, (&self.{}).into());", field.binding, field.name).ok();
+    }
+    if fields.is_empty() {
+        out.push_str("let _ = visitor;\n");
+    }
+    out.push_str("}\nfn push_bytes(&self) -> &[u8] {\n");
+    out.push_str(if push { "bytemuck::bytes_of(&self.push)\n" } else { "&[]\n" });
+    out.push_str("}\nfn constants(&self) -> Vec<u32> {\nvec![");
+    for constant in constants {
+        let bits = if constant.ty == Type::Float { "to_bits()" } else { "cast_unsigned()" };
+        let place = format!("self.{}", constant.name.to_lowercase());
+        if constant.ty == Type::Uint { write!(out, "{place}, ").ok() } else { write!(out, "{place}.{bits}, ").ok() };
+    }
+    out.push_str("]\n}\n}\n");
+}
+
+fn write_struct(out: &mut String, name: &str, fields: &[crate::reflect::Field], structs: &BTreeMap<String, Struct>, summary: &str) -> Result<(), String> {
+    writeln!(out, "/// {summary}\n#[repr(C)]\n#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]\npub struct {name} {{").ok();
+    let mut end = 0;
+    for field in fields {
+        if field.offset != end {
+            return Err(format!("{name}.{} does not follow the field before it: use scalar block layout", field.name));
+        }
+        end = field.offset + size_of(&field.ty, structs);
+        let prefix = if name.ends_with("Push") { "types::" } else { "" };
+        writeln!(out, "/// At byte {}.\npub {}: {},", field.offset, field.name, rust_type(&field.ty, prefix)).ok();
+    }
+    writeln!(out, "}}\nconst _: () = assert!(size_of::<{name}>() == {end});").ok();
+    Ok(())
+}
+
+fn rust_type(ty: &Type, prefix: &str) -> String {
+    match ty {
+        Type::Float => "f32".to_owned(),
+        Type::Int => "i32".to_owned(),
+        Type::Uint => "u32".to_owned(),
+        Type::Array { element, count, .. } => format!("[{}; {count}]", rust_type(element, prefix)),
+        Type::Struct(name) => format!("{prefix}{name}"),
+    }
+}
+
+fn handle(kind: &BindingKind) -> String {
+    match kind {
+        BindingKind::SampledImage(_) => "SampledImage".to_owned(),
+        BindingKind::StorageImage { reads: true, writes: false, .. } => "ReadImage".to_owned(),
+        BindingKind::StorageImage { reads: false, .. } => "WriteImage".to_owned(),
+        BindingKind::StorageImage { .. } => "ReadWriteImage".to_owned(),
+        BindingKind::TexelBuffer => "TexelBuffer".to_owned(),
+        BindingKind::Uniform(ty) => format!("Uniform<{}>", rust_type(ty, "types::")),
+        BindingKind::Storage { element, reads: true, writes: false } => format!("ReadBuffer<{}>", rust_type(element, "types::")),
+        BindingKind::Storage { element, reads: false, .. } => format!("WriteBuffer<{}>", rust_type(element, "types::")),
+        BindingKind::Storage { element, .. } => format!("ReadWriteBuffer<{}>", rust_type(element, "types::")),
+    }
+}
+
+fn dim_name(dim: ImageDim) -> &'static str {
+    match dim {
+        ImageDim::D2 => "D2",
+        ImageDim::D2Array => "D2Array",
+        ImageDim::D3 => "D3",
+        ImageDim::Cube => "Cube",
+    }
+}
+
+fn camel(name: &str) -> String {
+    let capital = |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
+    name.split('_').map(capital).collect()
+}
+
+fn screaming(name: &str) -> String {
+    let mut out = String::new();
+    for (index, letter) in name.chars().enumerate() {
+        if letter.is_uppercase() && index > 0 {
+            out.push('_');
+        }
+        out.extend(letter.to_uppercase());
+    }
+    out
+}

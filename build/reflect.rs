@@ -1,0 +1,325 @@
+//! Reads from SPIR-V what a pass must supply: bindings, push constants, specialisation constants, local size, and the
+//! layout of every struct that crosses between host and shader.
+
+use std::collections::BTreeMap;
+
+use spirv::{Decoration, Dim, ExecutionMode, Op, StorageClass};
+
+/// A scalar, vector, matrix, array or struct in memory shared with the host.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Type {
+    Float,
+    Int,
+    Uint,
+    Array { element: Box<Type>, count: u32, stride: u32 },
+    Struct(String),
+}
+
+/// A struct as the shader lays it out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Struct {
+    pub name: String,
+    pub fields: Vec<Field>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    pub name: String,
+    pub offset: u32,
+    pub ty: Type,
+}
+
+/// How many texels an image binding spans, as its shader type says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImageDim {
+    D2,
+    D2Array,
+    D3,
+    Cube,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum BindingKind {
+    SampledImage(ImageDim),
+    StorageImage { dim: ImageDim, reads: bool, writes: bool },
+    TexelBuffer,
+    Uniform(Type),
+    Storage { element: Type, reads: bool, writes: bool },
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Binding {
+    pub name: String,
+    pub set: u32,
+    pub binding: u32,
+    pub kind: BindingKind,
+}
+
+/// A specialisation constant with its default as raw bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constant {
+    pub name: String,
+    pub id: u32,
+    pub ty: Type,
+    pub default: u32,
+}
+
+/// What one shader stage asks for.
+#[derive(Debug, Default)]
+pub struct Stage {
+    pub bindings: Vec<Binding>,
+    pub push: Option<Struct>,
+    pub constants: Vec<Constant>,
+    pub local_size: [u32; 3],
+    pub structs: BTreeMap<String, Struct>,
+}
+
+#[derive(Clone, Debug)]
+enum RawType {
+    Other,
+    Int { signed: bool },
+    Float,
+    Vector { component: u32, count: u32 },
+    Matrix { column: u32, count: u32 },
+    Image { dim: Dim, arrayed: bool, sampled: u32 },
+    SampledImage { image: u32 },
+    Array { element: u32, length: u32 },
+    RuntimeArray { element: u32 },
+    Struct { members: Vec<u32> },
+    Pointer { pointee: u32 },
+}
+
+#[derive(Default)]
+struct Module {
+    names: BTreeMap<u32, String>,
+    member_names: BTreeMap<(u32, u32), String>,
+    decorations: BTreeMap<(u32, Decoration), u32>,
+    member_decorations: BTreeMap<(u32, u32, Decoration), u32>,
+    types: BTreeMap<u32, RawType>,
+    constants: BTreeMap<u32, (u32, u32)>,
+    specialised: Vec<u32>,
+    variables: Vec<(u32, u32, StorageClass)>,
+    local_size: [u32; 3],
+    local_size_ids: Option<[u32; 3]>,
+}
+
+/// Reads one stage. Errors are sentences about the shader, without its file name.
+pub fn reflect(words: &[u32]) -> Result<Stage, String> {
+    let module = parse(words)?;
+    let mut stage = Stage { local_size: module.local_size, ..Stage::default() };
+    if let Some(ids) = module.local_size_ids {
+        stage.local_size = ids.map(|id| module.constants.get(&id).map_or(1, |constant| constant.1));
+    }
+    for &id in &module.specialised {
+        let Some(&spec_id) = module.decorations.get(&(id, Decoration::SpecId)) else { continue };
+        let (ty, default) = module.constants[&id];
+        stage.constants.push(Constant { name: module.name(id)?, id: spec_id, ty: module.host_type(ty, 0, &mut stage.structs)?, default });
+    }
+    for &(id, pointer, class) in &module.variables {
+        let Some(RawType::Pointer { pointee }) = module.types.get(&pointer) else { continue };
+        match class {
+            StorageClass::PushConstant => {
+                let fields = module.struct_fields(*pointee, &mut stage.structs)?;
+                stage.push = Some(Struct { name: String::new(), fields });
+            }
+            StorageClass::UniformConstant | StorageClass::Uniform | StorageClass::StorageBuffer => {
+                let binding = module.binding(id, *pointee, class, &mut stage.structs)?;
+                stage.bindings.push(binding);
+            }
+            _ => {}
+        }
+    }
+    stage.bindings.sort_by_key(|binding| (binding.set, binding.binding));
+    Ok(stage)
+}
+
+fn parse(words: &[u32]) -> Result<Module, String> {
+    let mut module = Module { local_size: [1; 3], ..Module::default() };
+    let mut at = 5;
+    while at < words.len() {
+        let count = (words[at] >> 16) as usize;
+        let Some(op) = Op::from_u32(words[at] & 0xffff) else { return Err("it holds an unknown instruction".to_owned()) };
+        if count == 0 || at + count > words.len() {
+            return Err("its SPIR-V is cut short".to_owned());
+        }
+        module.read(op, &words[at + 1..at + count]);
+        at += count;
+    }
+    Ok(module)
+}
+
+fn text(words: &[u32]) -> String {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|&byte| byte != 0).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+impl Module {
+    fn read(&mut self, op: Op, operands: &[u32]) {
+        match op {
+            Op::Name => drop(self.names.insert(operands[0], text(&operands[1..]))),
+            Op::MemberName => drop(self.member_names.insert((operands[0], operands[1]), text(&operands[2..]))),
+            Op::Decorate => {
+                if let Some(decoration) = Decoration::from_u32(operands[1]) {
+                    self.decorations.insert((operands[0], decoration), operands.get(2).copied().unwrap_or(0));
+                }
+            }
+            Op::MemberDecorate => {
+                if let Some(decoration) = Decoration::from_u32(operands[2]) {
+                    self.member_decorations.insert((operands[0], operands[1], decoration), operands.get(3).copied().unwrap_or(0));
+                }
+            }
+            Op::ExecutionMode if operands[1] == ExecutionMode::LocalSize as u32 => self.local_size = [operands[2], operands[3], operands[4]],
+            Op::ExecutionModeId if operands[1] == ExecutionMode::LocalSizeId as u32 => {
+                self.local_size_ids = Some([operands[2], operands[3], operands[4]]);
+            }
+            Op::TypeInt => self.add_type(operands[0], RawType::Int { signed: operands[2] == 1 }),
+            Op::TypeFloat => self.add_type(operands[0], RawType::Float),
+            Op::TypeVector => self.add_type(operands[0], RawType::Vector { component: operands[1], count: operands[2] }),
+            Op::TypeMatrix => self.add_type(operands[0], RawType::Matrix { column: operands[1], count: operands[2] }),
+            Op::TypeImage => {
+                let dim = Dim::from_u32(operands[2]).unwrap_or(Dim::Dim2D);
+                self.add_type(operands[0], RawType::Image { dim, arrayed: operands[4] == 1, sampled: operands[6] });
+            }
+            Op::TypeSampledImage => self.add_type(operands[0], RawType::SampledImage { image: operands[1] }),
+            Op::TypeArray => self.add_type(operands[0], RawType::Array { element: operands[1], length: operands[2] }),
+            Op::TypeRuntimeArray => self.add_type(operands[0], RawType::RuntimeArray { element: operands[1] }),
+            Op::TypeStruct => self.add_type(operands[0], RawType::Struct { members: operands[1..].to_vec() }),
+            Op::TypePointer => self.add_type(operands[0], RawType::Pointer { pointee: operands[2] }),
+            Op::Constant => drop(self.constants.insert(operands[1], (operands[0], operands[2]))),
+            Op::SpecConstant => {
+                self.constants.insert(operands[1], (operands[0], operands[2]));
+                self.specialised.push(operands[1]);
+            }
+            Op::Variable => {
+                if let Some(class) = StorageClass::from_u32(operands[2]) {
+                    self.variables.push((operands[1], operands[0], class));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn add_type(&mut self, id: u32, ty: RawType) {
+        self.types.insert(id, ty);
+    }
+
+    fn name(&self, id: u32) -> Result<String, String> {
+        self.names.get(&id).filter(|name| !name.is_empty()).cloned().ok_or_else(|| format!("%{id} has no name"))
+    }
+
+    fn has(&self, id: u32, decoration: Decoration) -> bool {
+        self.decorations.contains_key(&(id, decoration))
+    }
+
+    fn binding(&self, id: u32, pointee: u32, class: StorageClass, structs: &mut BTreeMap<String, Struct>) -> Result<Binding, String> {
+        let place = |decoration| self.decorations.get(&(id, decoration)).copied();
+        let set = place(Decoration::DescriptorSet).unwrap_or(0);
+        let reads = !self.has(id, Decoration::NonReadable);
+        let writes = !self.has(id, Decoration::NonWritable);
+        match &self.types[&pointee] {
+            RawType::SampledImage { image } => {
+                let RawType::Image { dim, arrayed, .. } = self.types[image] else { return Err("a sampler of no image".to_owned()) };
+                let kind = if dim == Dim::DimBuffer { BindingKind::TexelBuffer } else { BindingKind::SampledImage(image_dim(dim, arrayed)?) };
+                self.finish(id, self.name(id)?, set, kind)
+            }
+            RawType::Image { dim, arrayed, sampled } => {
+                let kind = match (dim, sampled) {
+                    (Dim::DimBuffer, _) => BindingKind::TexelBuffer,
+                    (_, 2) => BindingKind::StorageImage { dim: image_dim(*dim, *arrayed)?, reads, writes },
+                    _ => return Err(format!("{} is a texture without a sampler; use sampler2D and its like", self.name(id)?)),
+                };
+                self.finish(id, self.name(id)?, set, kind)
+            }
+            RawType::Struct { members } => {
+                let [member] = members[..] else {
+                    return Err(format!("block {} must have exactly one member, a struct or an array", self.name(pointee)?));
+                };
+                let name = self.member_names.get(&(pointee, 0)).cloned().ok_or("a block member has no name")?;
+                let element = match self.types[&member] {
+                    RawType::RuntimeArray { element } => element,
+                    _ => member,
+                };
+                let ty = self.host_type(element, pointee, structs)?;
+                let member_has = |decoration| self.member_decorations.contains_key(&(pointee, 0, decoration));
+                let kind = if class == StorageClass::Uniform {
+                    BindingKind::Uniform(ty)
+                } else {
+                    let reads = reads && !member_has(Decoration::NonReadable);
+                    BindingKind::Storage { element: ty, reads, writes: writes && !member_has(Decoration::NonWritable) }
+                };
+                self.finish(id, name, set, kind)
+            }
+            _ => Err(format!("{} is of a kind that bindings do not have", self.name(id)?)),
+        }
+    }
+
+    fn finish(&self, id: u32, name: String, set: u32, kind: BindingKind) -> Result<Binding, String> {
+        let binding = self.decorations.get(&(id, Decoration::Binding)).copied();
+        let binding = binding.ok_or_else(|| format!("{name} has no layout(binding = …)"))?;
+        Ok(Binding { name, set, binding, kind })
+    }
+
+    fn struct_fields(&self, id: u32, structs: &mut BTreeMap<String, Struct>) -> Result<Vec<Field>, String> {
+        let RawType::Struct { members } = &self.types[&id] else { return Err("a block that is no struct".to_owned()) };
+        let mut fields = Vec::new();
+        for (index, &member) in (0..).zip(members) {
+            let name = self.member_names.get(&(id, index)).cloned().ok_or("a struct member has no name")?;
+            let offset = self.member_decorations.get(&(id, index, Decoration::Offset)).copied();
+            let offset = offset.ok_or_else(|| format!("member {name} has no offset"))?;
+            fields.push(Field { name, offset, ty: self.host_type(member, id, structs)? });
+        }
+        Ok(fields)
+    }
+
+    fn host_type(&self, id: u32, parent: u32, structs: &mut BTreeMap<String, Struct>) -> Result<Type, String> {
+        Ok(match &self.types[&id] {
+            RawType::Float => Type::Float,
+            RawType::Int { signed: true } => Type::Int,
+            RawType::Int { signed: false } => Type::Uint,
+            RawType::Vector { component, count } => array(self.host_type(*component, parent, structs)?, *count, 4),
+            RawType::Matrix { column, count } => {
+                let column = self.host_type(*column, parent, structs)?;
+                let stride = size_of(&column, structs);
+                array(column, *count, stride)
+            }
+            RawType::Array { element, length } => {
+                let count = self.constants.get(length).map_or(0, |constant| constant.1);
+                let stride = self.decorations.get(&(id, Decoration::ArrayStride)).copied().unwrap_or(0);
+                array(self.host_type(*element, parent, structs)?, count, stride)
+            }
+            RawType::Struct { .. } => {
+                let name = self.name(id)?;
+                let fields = self.struct_fields(id, structs)?;
+                structs.insert(name.clone(), Struct { name: name.clone(), fields });
+                Type::Struct(name)
+            }
+            other => return Err(format!("a {other:?} cannot cross between host and shader")),
+        })
+    }
+}
+
+fn array(element: Type, count: u32, stride: u32) -> Type {
+    Type::Array { element: Box::new(element), count, stride }
+}
+
+fn image_dim(dim: Dim, arrayed: bool) -> Result<ImageDim, String> {
+    match (dim, arrayed) {
+        (Dim::Dim2D, false) => Ok(ImageDim::D2),
+        (Dim::Dim2D, true) => Ok(ImageDim::D2Array),
+        (Dim::Dim3D, false) => Ok(ImageDim::D3),
+        (Dim::DimCube, false) => Ok(ImageDim::Cube),
+        _ => Err(format!("images of kind {dim:?} are not supported")),
+    }
+}
+
+/// Bytes that a value takes with scalar block layout.
+pub fn size_of(ty: &Type, structs: &BTreeMap<String, Struct>) -> u32 {
+    match ty {
+        Type::Float | Type::Int | Type::Uint => 4,
+        Type::Array { count, stride, .. } => count * stride,
+        Type::Struct(name) => {
+            let last = structs[name].fields.iter().max_by_key(|field| field.offset);
+            last.map_or(0, |field| field.offset + size_of(&field.ty, structs))
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Handles of images and buffers, and the typed ways in which a pass binds them. The structs that build.rs generates
+//! hold these types, so that a sampled image cannot stand where a storage image belongs.
+
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use ash::vk;
+
+use crate::vulkan::program::Program;
+use crate::vulkan::{ImageInfo, SamplerKind};
+
+/// What a pass binds to one set of its program.
+pub(crate) trait BindingSet {
+    const PROGRAM: &'static Program;
+    const SET: u32;
+    fn visit(&self, visitor: &mut dyn FnMut(u32, Access));
+    fn push_bytes(&self) -> &[u8];
+    fn constants(&self) -> Vec<u32>;
+}
+
+/// An image of the frame, or some of its mip levels. A copyable name, not the memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ImageRef {
+    pub(super) id: usize,
+    pub(super) mips: (u32, u32),
+    pub(super) info: ImageInfo,
+}
+
+impl ImageRef {
+    pub(crate) fn info(&self) -> ImageInfo {
+        self.info
+    }
+
+    /// Only mip level `level`.
+    pub(crate) fn mip(self, level: u32) -> ImageRef {
+        ImageRef { mips: (level, level + 1), ..self }
+    }
+
+    /// Through a sampler that clamps at the edges and filters linearly; `texelFetch` ignores both.
+    pub(crate) fn sampled(self) -> SampledImage {
+        self.sampled_with(SamplerKind::LinearClamp)
+    }
+
+    pub(crate) fn sampled_with(self, sampler: SamplerKind) -> SampledImage {
+        SampledImage(self.access(ImageUse::Sampled(sampler)))
+    }
+
+    pub(crate) fn read(self) -> ReadImage {
+        ReadImage(self.access(ImageUse::StorageRead))
+    }
+
+    /// Every texel is written; what was there before does not matter.
+    pub(crate) fn write(self) -> WriteImage {
+        WriteImage(self.access(ImageUse::StorageWrite))
+    }
+
+    /// Some texels are written; the others keep what they held.
+    pub(crate) fn modify(self) -> WriteImage {
+        WriteImage(self.access(ImageUse::StorageModify))
+    }
+
+    pub(crate) fn read_write(self) -> ReadWriteImage {
+        ReadWriteImage(self.access(ImageUse::StorageModify))
+    }
+
+    pub(super) fn access(self, usage: ImageUse) -> Access {
+        Access::Image { image: self.id, mips: self.mips.0..self.mips.1, usage }
+    }
+}
+
+/// A buffer of the frame that holds elements of `T`. A copyable name, not the memory.
+#[derive(Debug)]
+pub(crate) struct BufferRef<T> {
+    pub(super) id: usize,
+    pub(super) count: usize,
+    pub(super) element: PhantomData<fn() -> T>,
+}
+
+impl<T> Clone for BufferRef<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for BufferRef<T> {}
+
+impl<T> BufferRef<T> {
+    /// Number of elements.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(crate) fn uniform(self) -> Uniform<T> {
+        Uniform(self.access(BufferUse::Uniform), PhantomData)
+    }
+
+    pub(crate) fn read(self) -> ReadBuffer<T> {
+        ReadBuffer(self.access(BufferUse::Read), PhantomData)
+    }
+
+    /// Every element is written; what was there before does not matter.
+    pub(crate) fn write(self) -> WriteBuffer<T> {
+        WriteBuffer(self.access(BufferUse::Write), PhantomData)
+    }
+
+    pub(crate) fn read_write(self) -> ReadWriteBuffer<T> {
+        ReadWriteBuffer(self.access(BufferUse::Modify), PhantomData)
+    }
+
+    /// As texels of `format`, the fastest way to read a list in an inner loop on the software driver.
+    pub(crate) fn texels(self, format: vk::Format) -> TexelBuffer {
+        TexelBuffer(self.access(BufferUse::Texels(format)))
+    }
+
+    pub(super) fn access(self, usage: BufferUse) -> Access {
+        Access::Buffer { buffer: self.id, usage }
+    }
+}
+
+/// One use of one resource by one pass.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Access {
+    Image { image: usize, mips: Range<u32>, usage: ImageUse },
+    Buffer { buffer: usize, usage: BufferUse },
+}
+
+/// How a pass uses an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum ImageUse {
+    Sampled(SamplerKind),
+    StorageRead,
+    /// Writes everything.
+    StorageWrite,
+    /// Reads or keeps what it does not write.
+    StorageModify,
+    /// A colour attachment; `keep`: drawn over what it holds.
+    Color { keep: bool },
+    /// A depth or stencil attachment that is written; `keep` as above.
+    Depth { keep: bool },
+    /// A depth or stencil attachment that is only tested against.
+    DepthTest,
+    /// Cleared by the transfer engine.
+    Clear,
+}
+
+/// How a pass uses a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum BufferUse {
+    Uniform,
+    Read,
+    Write,
+    Modify,
+    Texels(vk::Format),
+    Indirect,
+    Clear,
+}
+
+macro_rules! image_binding {
+    ($($(#[$doc:meta])* $name:ident),*) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub(crate) struct $name(pub(super) Access);
+
+        impl From<&$name> for Access {
+            fn from(binding: &$name) -> Access {
+                binding.0.clone()
+            }
+        }
+    )* };
+}
+
+image_binding! {
+    /// `sampler2D` and its like.
+    SampledImage,
+    /// A `readonly` storage image.
+    ReadImage,
+    /// A `writeonly` storage image.
+    WriteImage,
+    /// A storage image that is read and written.
+    ReadWriteImage,
+    /// `samplerBuffer`.
+    TexelBuffer
+}
+
+macro_rules! buffer_binding {
+    ($($(#[$doc:meta])* $name:ident),*) => { $(
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub(crate) struct $name<T>(pub(super) Access, pub(super) PhantomData<fn() -> T>);
+
+        impl<T> Clone for $name<T> {
+            fn clone(&self) -> Self {
+                $name(self.0.clone(), PhantomData)
+            }
+        }
+
+        impl<T> From<&$name<T>> for Access {
+            fn from(binding: &$name<T>) -> Access {
+                binding.0.clone()
+            }
+        }
+    )* };
+}
+
+buffer_binding! {
+    /// A uniform block.
+    Uniform,
+    /// A `readonly` buffer.
+    ReadBuffer,
+    /// A `writeonly` buffer.
+    WriteBuffer,
+    /// A buffer that is read and written.
+    ReadWriteBuffer
+}

@@ -1,0 +1,137 @@
+//! Which passes must run: those whose outputs somebody asks for and memory does not hold already. Pure; no Vulkan.
+//!
+//! Every content that a resource takes has a key, a hash of all that it depends on: the pass that makes it, its
+//! settings, and the keys of its inputs. A resource whose memory still holds the key that is wanted needs no pass.
+
+use std::collections::{HashMap, HashSet};
+
+/// One buffer, or one mip level of an image.
+pub(crate) type Place = (usize, u32);
+
+/// A content of a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Version {
+    pub(crate) place: Place,
+    pub(crate) key: u64,
+}
+
+/// What one pass reads and makes. A place that it modifies is in both lists.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Needs {
+    pub(crate) reads: Vec<Version>,
+    pub(crate) writes: Vec<Version>,
+}
+
+/// Whether a pass runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    Run,
+    /// Its last result stands.
+    Unchanged,
+    /// Nobody asks for its outputs.
+    NotAsked,
+}
+
+/// Decides about `passes`, in the order of their declaration, when `wanted` is asked for and `stored` tells what each
+/// place holds.
+pub(crate) fn decide(passes: &[Needs], wanted: &[Version], stored: impl Fn(Place) -> Option<u64>) -> Vec<Verdict> {
+    let asked = walk(passes, wanted, |_| false).0;
+    let mut stale: HashSet<Place> = HashSet::new();
+    loop {
+        let held = |version: Version| !stale.contains(&version.place) && stored(version.place) == Some(version.key);
+        let (runs, taken) = walk(passes, wanted, held);
+        // A content taken from memory must not be overwritten by an earlier pass that has to run after all.
+        let clobbered = taken.into_iter().find(|(user, version)| {
+            passes[..*user].iter().zip(&runs).any(|(pass, runs)| *runs && pass.writes.iter().any(|write| write.place == version.place))
+        });
+        match clobbered {
+            Some((_, version)) => drop(stale.insert(version.place)),
+            None => {
+                let verdict = |(asked, runs): (&bool, &bool)| match (asked, runs) {
+                    (_, true) => Verdict::Run,
+                    (true, false) => Verdict::Unchanged,
+                    (false, false) => Verdict::NotAsked,
+                };
+                return asked.iter().zip(&runs).map(verdict).collect();
+            }
+        }
+    }
+}
+
+/// Which passes run when `held` contents need none, and which contents are taken from memory: by which pass (its
+/// number; `passes.len()` for `wanted`).
+fn walk(passes: &[Needs], wanted: &[Version], held: impl Fn(Version) -> bool) -> (Vec<bool>, Vec<(usize, Version)>) {
+    let mut runs = vec![false; passes.len()];
+    let mut wants: HashMap<Place, u64> = HashMap::new();
+    let mut taken = Vec::new();
+    let want = |user: usize, version: Version, wants: &mut HashMap<Place, u64>, taken: &mut Vec<(usize, Version)>| {
+        if held(version) {
+            taken.push((user, version));
+        } else {
+            wants.insert(version.place, version.key);
+        }
+    };
+    for &version in wanted {
+        want(passes.len(), version, &mut wants, &mut taken);
+    }
+    for (index, pass) in passes.iter().enumerate().rev() {
+        runs[index] = pass.writes.iter().any(|write| wants.get(&write.place) == Some(&write.key));
+        if runs[index] {
+            for write in &pass.writes {
+                wants.remove(&write.place);
+            }
+            for &read in &pass.reads {
+                want(index, read, &mut wants, &mut taken);
+            }
+        }
+    }
+    (runs, taken)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Verdict::{NotAsked, Run, Unchanged};
+
+    fn pass(reads: &[(usize, u64)], writes: &[(usize, u64)]) -> Needs {
+        let versions = |list: &[(usize, u64)]| list.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
+        Needs { reads: versions(reads), writes: versions(writes) }
+    }
+
+    fn run(passes: &[Needs], wanted: &[(usize, u64)], stored: &[(usize, u64)]) -> Vec<Verdict> {
+        let wanted: Vec<_> = wanted.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
+        decide(passes, &wanted, |(resource, _)| stored.iter().find(|(place, _)| *place == resource).map(|(_, key)| *key))
+    }
+
+    #[test]
+    fn only_what_leads_to_a_wanted_output_runs() {
+        let passes = [pass(&[], &[(0, 10)]), pass(&[], &[(1, 11)]), pass(&[(0, 10)], &[(2, 12)])];
+        assert_eq!(run(&passes, &[(2, 12)], &[]), [Run, NotAsked, Run]);
+        assert_eq!(run(&passes, &[], &[]), [NotAsked; 3]);
+    }
+
+    #[test]
+    fn what_memory_holds_is_not_made_again() {
+        let passes = [pass(&[], &[(0, 10)]), pass(&[(0, 10)], &[(1, 11)]), pass(&[(1, 11)], &[(2, 12)])];
+        assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 11), (2, 12)]), [Unchanged; 3]);
+        assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 11)]), [Unchanged, Unchanged, Run]);
+        assert_eq!(run(&passes, &[(2, 12)], &[(0, 99), (1, 11)]), [Unchanged, Unchanged, Run], "an intermediate may be gone");
+        assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 99)]), [Unchanged, Run, Run]);
+    }
+
+    #[test]
+    fn a_chain_of_modifications_runs_as_a_whole_or_not_at_all() {
+        let passes = [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(1, 3)])];
+        assert_eq!(run(&passes, &[(1, 3)], &[(0, 2)]), [Unchanged, Unchanged, Run]);
+        assert_eq!(run(&passes, &[(1, 3)], &[(0, 1)]), [Unchanged, Run, Run], "the first version stands");
+        assert_eq!(run(&passes, &[(1, 3)], &[(0, 7)]), [Run, Run, Run]);
+    }
+
+    #[test]
+    fn a_content_that_an_earlier_pass_overwrites_is_made_again() {
+        // Pass 1 needs the first content of 0, pass 3 the second, which memory holds.
+        let passes = [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(2, 6)])];
+        assert_eq!(run(&passes, &[(1, 5), (2, 6)], &[(0, 2)]), [Run, Run, Run, Run]);
+assert_eq!(run(&passes, &[(2, 6)], &[(0, 2)]), [Unchanged, NotAsked, Unchanged, Run]);
+    }
+}

@@ -1,0 +1,293 @@
+//! The pass graph: a method declares images, buffers and passes; the graph drops what nobody asks for or what memory
+//! still holds, places barriers, wraps every pass in label, timestamps and crash marker, and accounts for memory.
+//!
+//! A frame is declared anew each time, in the order in which its passes run:
+//! ```text
+//! let sums = graph.buffer::<[f32; 4]>("rsm.tile_sums", tiles);
+//! graph.pass("diffuse/rsm/tile-flux", shaders::rsm::TileFlux {
+//!     light_flux: views.flux.sampled(),
+//!     tile_sums:  sums.write(),
+//!     push:       TileFluxPush { tiles_per_row },
+//! }).groups([tiles, 1, 1]);
+//! ```
+//! Usage flags, layouts, stage and access masks derive from these lines. Every content gets a key from what it is
+//! made of ([`demand`]), so "nothing changed" needs no declaration of its own.
+
+pub(crate) mod barriers;
+pub(crate) mod bindings;
+pub(crate) mod demand;
+mod describe;
+mod execute;
+mod pass;
+mod store;
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use ash::vk;
+use bytemuck::Pod;
+
+use crate::vulkan::{Buffer, Image, ImageInfo, RasterState};
+use bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
+use demand::Version;
+pub use describe::GraphDescription;
+pub(crate) use execute::{Executed, ReadBack};
+pub(crate) use pass::{DrawCall, DrawGroup, DrawList, PassBuilder};
+use pass::{Pass, Work};
+pub(crate) use store::Store;
+
+/// What a content depends on, for the reasons that tables give.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Dependence(u8);
+
+impl Dependence {
+    pub(crate) const NONE: Dependence = Dependence(0);
+    pub(crate) const GEOMETRY: Dependence = Dependence(1);
+    pub(crate) const MATERIALS: Dependence = Dependence(2);
+    pub(crate) const LIGHTS: Dependence = Dependence(4);
+    pub(crate) const CAMERA: Dependence = Dependence(8);
+    const NAMES: [&'static str; 4] = ["geometry", "materials", "lights", "camera"];
+
+    fn reason(self) -> String {
+        let names: Vec<_> = (0..).zip(Dependence::NAMES).filter(|(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name).collect();
+        if names.is_empty() { "unchanged".to_owned() } else { format!("unchanged: {}", names.join(", ")) }
+    }
+}
+
+impl std::ops::BitOr for Dependence {
+    type Output = Dependence;
+
+    fn bitor(self, other: Dependence) -> Dependence {
+        Dependence(self.0 | other.0)
+    }
+}
+
+enum Body {
+    Image(ImageInfo),
+    Buffer { bytes: u64 },
+    /// Written by the host before the frame.
+    Upload(Vec<u8>),
+    /// Owned by the scene: only read, and in its final layout.
+    ExternalBuffer(Arc<Buffer>),
+    ExternalImage(Arc<Image>),
+}
+
+struct Resource {
+    name: String,
+    body: Body,
+    /// Key and dependence of the present content, for each mip level (one for a buffer).
+    content: Vec<(u64, Dependence)>,
+    image_usage: vk::ImageUsageFlags,
+    buffer_usage: vk::BufferUsageFlags,
+    /// The piece that first writes it.
+    piece: Option<String>,
+}
+
+/// One frame while it is declared.
+pub(crate) struct Graph<'s> {
+    store: &'s mut Store,
+    resources: Vec<Resource>,
+    passes: Vec<Pass>,
+    wanted: Vec<Version>,
+    read_backs: Vec<usize>,
+}
+
+impl<'s> Graph<'s> {
+    pub(crate) fn new(store: &'s mut Store) -> Graph<'s> {
+        Graph { store, resources: Vec::new(), passes: Vec::new(), wanted: Vec::new(), read_backs: Vec::new() }
+    }
+
+    fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {
+        debug_assert!(self.resources.iter().all(|resource| resource.name != name), "{name} is declared twice");
+        let content = (0..places).map(content).collect();
+        let (image_usage, buffer_usage) = Default::default();
+        self.resources.push(Resource { name: name.to_owned(), body, content, image_usage, buffer_usage, piece: None });
+        self.resources.len() - 1
+    }
+
+    /// An image of the frame. What it held in the last frame stands until a pass writes it.
+    pub(crate) fn image(&mut self, name: &str, format: vk::Format, extent: [u32; 2]) -> ImageRef {
+        self.image_with(name, ImageInfo { format, extent: [extent[0], extent[1], 1], mips: 1, layers: 1, volume: false })
+    }
+
+    /// An image of any shape.
+    pub(crate) fn image_with(&mut self, name: &str, info: ImageInfo) -> ImageRef {
+        let held: Vec<u64> = (0..info.mips).map(|mip| self.store.image_key(name, &info, mip).unwrap_or(0)).collect();
+        let id = self.add(name, Body::Image(info), info.mips, |mip| (held[mip as usize], Dependence::NONE));
+        ImageRef { id, mips: (0, info.mips), info }
+    }
+
+    /// A buffer of `count` elements. What it held in the last frame stands until a pass writes it.
+    pub(crate) fn buffer<T>(&mut self, name: &str, count: usize) -> BufferRef<T> {
+        let bytes = (size_of::<T>() * count) as u64;
+        let held = self.store.buffer_key(name, bytes).unwrap_or(0);
+        let id = self.add(name, Body::Buffer { bytes }, 1, |_| (held, Dependence::NONE));
+        BufferRef { id, count, element: PhantomData }
+    }
+
+    /// A buffer that the host fills with `elements`.
+    pub(crate) fn upload<T: Pod>(&mut self, name: &str, elements: &[T], dependence: Dependence) -> BufferRef<T> {
+        let bytes: &[u8] = bytemuck::cast_slice(elements);
+        let key = hash_of(&(name, bytes));
+        let id = self.add(name, Body::Upload(bytes.to_vec()), 1, |_| (key, dependence));
+        BufferRef { id, count: elements.len(), element: PhantomData }
+    }
+
+    /// A buffer of the scene, whose content `key` names.
+    pub(crate) fn import_buffer<T>(&mut self, name: &str, buffer: &Arc<Buffer>, key: u64, dependence: Dependence) -> BufferRef<T> {
+        let count = usize::try_from(buffer.size).unwrap_or(0) / size_of::<T>().max(1);
+        let id = self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence));
+        BufferRef { id, count, element: PhantomData }
+    }
+
+    /// An image of the scene, in the layout for sampling, whose content `key` names.
+    #[allow(dead_code, reason = "textures are bound per material so far; compute passes that sample them bind them here")]
+    pub(crate) fn import_image(&mut self, name: &str, image: &Arc<Image>, key: u64, dependence: Dependence) -> ImageRef {
+        let info = image.info;
+        let id = self.add(name, Body::ExternalImage(image.clone()), info.mips, |_| (key, dependence));
+        ImageRef { id, mips: (0, info.mips), info }
+    }
+
+    /// A compute pass. `name` is `piece/pass`: timer, debug label and crash marker.
+    pub(crate) fn pass<B: BindingSet>(&mut self, name: &str, bindings: B) -> PassBuilder<'_, 's> {
+        PassBuilder::new(self, name, &bindings, None)
+    }
+
+    /// A raster pass.
+    pub(crate) fn raster<B: BindingSet>(&mut self, name: &str, bindings: B, state: RasterState) -> PassBuilder<'_, 's> {
+        PassBuilder::new(self, name, &bindings, Some(state))
+    }
+
+    /// Sets every texel of a colour image.
+    pub(crate) fn clear_image(&mut self, name: &str, image: ImageRef, value: [f32; 4]) {
+        let bytes = bytemuck::bytes_of(&value).to_vec();
+        let work = Work::ClearImage { image: image.id, mips: image.mips.0..image.mips.1, value };
+        let access = image.access(ImageUse::Clear);
+        self.add_pass(Pass::transfer(name, access, bytes, work));
+    }
+
+    /// Sets every word of a buffer.
+    #[allow(dead_code, reason = "lists and counters of the methods to come start from it")]
+    pub(crate) fn fill_buffer<T>(&mut self, name: &str, buffer: BufferRef<T>, word: u32) {
+        let access = buffer.access(BufferUse::Clear);
+        let work = Work::FillBuffer { buffer: buffer.id, word };
+        self.add_pass(Pass::transfer(name, access, word.to_le_bytes().to_vec(), work));
+    }
+
+    /// Notes a piece or pass that the scene does not need, and why.
+    pub(crate) fn skip(&mut self, name: &str, reason: &str) {
+        self.passes.push(Pass::skipped(name, reason));
+    }
+
+    /// Asks that the image be made.
+    pub(crate) fn want(&mut self, image: ImageRef) {
+        let content = &self.resources[image.id].content;
+        self.wanted.extend((image.mips.0..image.mips.1).map(|mip| Version { place: (image.id, mip), key: content[mip as usize].0 }));
+    }
+
+    /// Asks that the image be made and its first mip level copied to the host. Returns its number among the read-backs.
+    pub(crate) fn read_back(&mut self, image: ImageRef) -> ReadBack {
+        self.want(image.mip(0));
+        self.resources[image.id].image_usage |= vk::ImageUsageFlags::TRANSFER_SRC;
+        self.read_backs.push(image.id);
+        ReadBack(self.read_backs.len() - 1)
+    }
+
+    /// Asks that the buffer be made and copied to the host.
+    pub(crate) fn read_back_buffer<T>(&mut self, buffer: BufferRef<T>) -> ReadBack {
+        self.wanted.push(Version { place: (buffer.id, 0), key: self.resources[buffer.id].content[0].0 });
+        self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
+        self.read_backs.push(buffer.id);
+        ReadBack(self.read_backs.len() - 1)
+    }
+
+    /// Derives the usage flags, contents and needs of a pass from its accesses, and adds it.
+    fn add_pass(&mut self, mut pass: Pass) {
+        let mut hasher = DefaultHasher::new();
+        pass.hash_work(&mut hasher);
+        let accesses: Vec<Access> = pass.accesses().cloned().collect();
+        for access in &accesses {
+            access.hash(&mut hasher);
+            for (place, reads, _) in places(access) {
+                let (key, dependence) = self.resources[place.0].content[place.1 as usize];
+                if reads {
+                    key.hash(&mut hasher);
+                    pass.needs.reads.push(Version { place, key });
+                    pass.dependence = pass.dependence | dependence;
+                }
+            }
+        }
+        for access in &accesses {
+            self.note_usage(access, &pass.piece);
+            for (place, _, writes) in places(access) {
+                if writes {
+                    let mut hasher = hasher.clone();
+                    place.hash(&mut hasher);
+                    self.resources[place.0].name.hash(&mut hasher);
+                    let key = hasher.finish().max(1);
+                    pass.needs.writes.push(Version { place, key });
+                    self.resources[place.0].content[place.1 as usize] = (key, pass.dependence);
+                }
+            }
+        }
+        self.passes.push(pass);
+    }
+
+    fn note_usage(&mut self, access: &Access, piece: &str) {
+        match access {
+            Access::Image { image, usage, .. } => {
+                let resource = &mut self.resources[*image];
+                resource.image_usage |= match usage {
+                    ImageUse::Sampled(_) => vk::ImageUsageFlags::SAMPLED,
+                    ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => vk::ImageUsageFlags::STORAGE,
+                    ImageUse::Color { .. } => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+                    ImageUse::Depth { .. } | ImageUse::DepthTest => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+                    ImageUse::Clear => vk::ImageUsageFlags::TRANSFER_DST,
+                };
+                resource.piece.get_or_insert_with(|| piece.to_owned());
+            }
+            Access::Buffer { buffer, usage } => {
+                let resource = &mut self.resources[*buffer];
+                resource.buffer_usage |= match usage {
+                    BufferUse::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,
+                    BufferUse::Read | BufferUse::Write | BufferUse::Modify => vk::BufferUsageFlags::STORAGE_BUFFER,
+                    BufferUse::Texels(_) => vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
+                    BufferUse::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
+                    BufferUse::Clear => vk::BufferUsageFlags::TRANSFER_DST,
+                };
+                resource.piece.get_or_insert_with(|| piece.to_owned());
+            }
+        }
+    }
+}
+
+/// The places that an access touches, and whether it reads and writes what they hold.
+fn places(access: &Access) -> Vec<(demand::Place, bool, bool)> {
+    match access {
+        Access::Image { image, mips, usage } => {
+            let (reads, writes) = match usage {
+                ImageUse::Sampled(_) | ImageUse::StorageRead | ImageUse::DepthTest => (true, false),
+                ImageUse::StorageWrite | ImageUse::Clear => (false, true),
+                ImageUse::StorageModify => (true, true),
+                ImageUse::Color { keep } | ImageUse::Depth { keep } => (*keep, true),
+            };
+            mips.clone().map(|mip| ((*image, mip), reads, writes)).collect()
+        }
+        Access::Buffer { buffer, usage } => {
+            let (reads, writes) = match usage {
+                BufferUse::Uniform | BufferUse::Read | BufferUse::Texels(_) | BufferUse::Indirect => (true, false),
+                BufferUse::Write | BufferUse::Clear => (false, true),
+                BufferUse::Modify => (true, true),
+            };
+            vec![((*buffer, 0), reads, writes)]
+        }
+    }
+}
+
+/// A hash that is the same in every run.
+pub(crate) fn hash_of(value: &impl Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    value.hash(&mut hasher);
+    hasher.finish().max(1)
+}

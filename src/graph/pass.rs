@@ -1,0 +1,291 @@
+//! Passes: what they bind, what they do, and the sentence that declares them.
+
+use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
+use std::ops::Range;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
+use super::demand::Needs;
+use super::{Dependence, Graph};
+use crate::vulkan::program::Program;
+use crate::vulkan::{Buffer, MaterialSets, RasterState};
+
+/// One indexed draw of one instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DrawCall {
+    pub(crate) index_count: u32,
+    pub(crate) first_index: u32,
+    pub(crate) vertex_offset: i32,
+    pub(crate) instance: u32,
+}
+
+/// Draws that share viewport, push constants and material set.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DrawGroup {
+    /// Viewport `x, y, width, height` and the scissor that cuts it; the whole target if `None`.
+    pub(crate) viewport: Option<([f32; 4], [u32; 4])>,
+    /// In place of the pass's own push constants.
+    pub(crate) push: Option<Vec<u8>>,
+    /// The index of its material set.
+    pub(crate) material: Option<usize>,
+    pub(crate) calls: Vec<DrawCall>,
+}
+
+/// The scene's geometry as one pass draws it.
+pub(crate) struct DrawList {
+    pub(crate) vertices: Vec<Arc<Buffer>>,
+    pub(crate) indices: Arc<Buffer>,
+    pub(crate) materials: Option<Arc<MaterialSets>>,
+    pub(crate) groups: Vec<DrawGroup>,
+    /// Names what is drawn: buffers, calls and viewports.
+    pub(crate) key: u64,
+    pub(crate) dependence: Dependence,
+}
+
+pub(super) enum Draws {
+    Meshes(Box<DrawList>),
+    #[allow(dead_code, reason = "full-screen and point passes of the methods to come")]
+    Vertices { vertices: u32, instances: u32 },
+    #[allow(dead_code, reason = "photon batches of the methods to come")]
+    Indirect { buffer: usize, offset: u64, count: u32 },
+}
+
+pub(super) enum Work {
+    Skipped(String),
+    Dispatch([u32; 3]),
+    DispatchIndirect { buffer: usize, offset: u64 },
+    Draw(Draws),
+    ClearImage { image: usize, mips: Range<u32>, value: [f32; 4] },
+    FillBuffer { buffer: usize, word: u32 },
+}
+
+/// Attachments of a raster pass and the values that they are cleared to.
+#[derive(Default)]
+pub(super) struct Targets {
+    /// The area drawn to; needed where there is no attachment.
+    pub(super) extent: [u32; 2],
+    /// `None`: an output that nobody takes.
+    pub(super) colors: Vec<Option<(Access, Option<ClearColor>)>>,
+    pub(super) depth: Option<(Access, Option<f32>)>,
+    pub(super) stencil: Option<(Access, Option<u32>)>,
+}
+
+/// The value that a colour attachment starts from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ClearColor {
+    Float([f32; 4]),
+    Uint([u32; 4]),
+}
+
+/// A counter that a pass leaves in a buffer.
+pub(super) struct Counter {
+    pub(super) name: String,
+    pub(super) buffer: usize,
+    pub(super) offset: u64,
+}
+
+pub(super) struct Pass {
+    pub(super) piece: String,
+    pub(super) name: String,
+    pub(super) program: Option<&'static Program>,
+    pub(super) constants: Vec<u32>,
+    pub(super) push: Vec<u8>,
+    pub(super) bindings: Vec<(u32, Access)>,
+    /// Accesses that are no bindings: attachments, indirect arguments, transfers.
+    pub(super) others: Vec<Access>,
+    pub(super) raster: Option<(RasterState, Targets)>,
+    pub(super) work: Work,
+    pub(super) needs: Needs,
+    pub(super) dependence: Dependence,
+    pub(super) counters: Vec<Counter>,
+    pub(super) notes: BTreeMap<String, u64>,
+}
+
+impl Pass {
+    fn new(name: &str, work: Work) -> Pass {
+        let (piece, pass) = name.rsplit_once('/').unwrap_or((name, ""));
+        Pass {
+            piece: piece.to_owned(),
+            name: pass.to_owned(),
+            program: None,
+            constants: Vec::new(),
+            push: Vec::new(),
+            bindings: Vec::new(),
+            others: Vec::new(),
+            raster: None,
+            work,
+            needs: Needs::default(),
+            dependence: Dependence::NONE,
+            counters: Vec::new(),
+            notes: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn skipped(name: &str, reason: &str) -> Pass {
+        Pass::new(name, Work::Skipped(reason.to_owned()))
+    }
+
+    pub(super) fn transfer(name: &str, access: Access, value: Vec<u8>, work: Work) -> Pass {
+        Pass { push: value, others: vec![access], ..Pass::new(name, work) }
+    }
+
+    pub(super) fn full_name(&self) -> String {
+        format!("{}/{}", self.piece, self.name)
+    }
+
+    pub(super) fn accesses(&self) -> impl Iterator<Item = &Access> {
+        self.bindings.iter().map(|(_, access)| access).chain(&self.others)
+    }
+
+    /// Everything that decides about its outputs, apart from what it reads.
+    pub(super) fn hash_work(&self, hasher: &mut impl Hasher) {
+        (&self.piece, &self.name, self.program.map(|program| program.name), &self.constants, &self.push).hash(hasher);
+        match &self.work {
+            Work::Dispatch(groups) => groups.hash(hasher),
+            Work::Draw(Draws::Meshes(list)) => list.key.hash(hasher),
+            Work::Draw(Draws::Vertices { vertices, instances }) => (vertices, instances).hash(hasher),
+            _ => {}
+        }
+        if let Some((state, targets)) = &self.raster {
+            state.hash(hasher);
+            format!("{:?} {:?} {:?}", targets.colors, targets.depth, targets.stencil).hash(hasher);
+        }
+    }
+}
+
+/// A pass being declared; a method that says how much work it has ends the sentence.
+#[must_use = "a pass without its amount of work is not added"]
+pub(crate) struct PassBuilder<'g, 's> {
+    graph: &'g mut Graph<'s>,
+    pass: Pass,
+}
+
+impl<'g, 's> PassBuilder<'g, 's> {
+    pub(super) fn new<B: BindingSet>(graph: &'g mut Graph<'s>, name: &str, bindings: &B, raster: Option<RasterState>) -> PassBuilder<'g, 's> {
+        debug_assert_eq!(B::SET, 0, "materials are bound by draws");
+        let mut pass = Pass::new(name, Work::Dispatch([0; 3]));
+        pass.program = Some(B::PROGRAM);
+        pass.constants = bindings.constants();
+        pass.push = bindings.push_bytes().to_vec();
+        bindings.visit(&mut |binding, access| pass.bindings.push((binding, access)));
+        pass.raster = raster.map(|state| (state, Targets::default()));
+        PassBuilder { graph, pass }
+    }
+
+    /// Notes a count that the host knows.
+    pub(crate) fn note(mut self, name: &str, count: u64) -> Self {
+        self.pass.notes.insert(name.to_owned(), count);
+        self
+    }
+
+    /// Reports the word at `index` of `buffer` after the pass as a work counter.
+    #[allow(dead_code, reason = "list nodes and photons of the methods to come")]
+    pub(crate) fn count(mut self, name: &str, buffer: BufferRef<u32>, index: usize) -> Self {
+        self.graph.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
+        self.pass.counters.push(Counter { name: name.to_owned(), buffer: buffer.id, offset: index as u64 * 4 });
+        self
+    }
+
+    fn targets(&mut self) -> &mut Targets {
+        &mut self.pass.raster.as_mut().expect("only raster passes have attachments").1
+    }
+
+    /// The next colour output. `clear` is the value that it starts from; `None` keeps what it holds.
+    pub(crate) fn color(mut self, image: ImageRef, clear: Option<ClearColor>) -> Self {
+        let access = image.access(ImageUse::Color { keep: clear.is_none() });
+        self.pass.others.push(access.clone());
+        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().colors.push(Some((access, clear)));
+        self
+    }
+
+    /// The next colour output, if somebody takes it.
+    pub(crate) fn color_if(mut self, image: Option<ImageRef>, clear: Option<ClearColor>) -> Self {
+        match image {
+            Some(image) => self.color(image, clear),
+            None => {
+                self.targets().colors.push(None);
+                self
+            }
+        }
+    }
+
+    /// The depth attachment, written; `clear` as for colours.
+    pub(crate) fn depth(mut self, image: ImageRef, clear: Option<f32>) -> Self {
+        let access = image.access(ImageUse::Depth { keep: clear.is_none() });
+        self.pass.others.push(access.clone());
+        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().depth = Some((access, clear));
+        self
+    }
+
+    /// The stencil attachment; `clear` as for colours. Without clearing and without writes it is only tested.
+    #[allow(dead_code, reason = "multi-resolution layers of the methods to come")]
+    pub(crate) fn stencil(mut self, image: ImageRef, clear: Option<u32>) -> Self {
+        let tests = self.pass.raster.as_ref().and_then(|(state, _)| state.stencil).is_some_and(|stencil| stencil.pass == vk::StencilOp::KEEP);
+        let usage = if clear.is_none() && tests { ImageUse::DepthTest } else { ImageUse::Depth { keep: clear.is_none() } };
+        let access = image.access(usage);
+        self.pass.others.push(access.clone());
+        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().stencil = Some((access, clear));
+        self
+    }
+
+    /// The area of a raster pass that has no attachments.
+    #[allow(dead_code, reason = "list building of the methods to come")]
+    pub(crate) fn area(mut self, extent: [u32; 2]) -> Self {
+        self.targets().extent = extent;
+        self
+    }
+
+    fn add(self, work: Work) {
+        let mut pass = self.pass;
+        pass.work = work;
+        self.graph.add_pass(pass);
+    }
+
+    /// Runs `groups` work groups.
+    pub(crate) fn groups(self, groups: [u32; 3]) {
+        self.add(Work::Dispatch(groups));
+    }
+
+    /// Runs at least `threads` invocations: the shader's local size says how many groups that takes.
+    pub(crate) fn threads(self, threads: [u32; 3]) {
+        let local = self.pass.program.map_or([1; 3], |program| program.local_size);
+        self.groups([0, 1, 2].map(|axis| threads[axis].div_ceil(local[axis])));
+    }
+
+    /// Runs one group for each block of 8×8 pixels.
+    pub(crate) fn pixels(self, size: [u32; 2]) {
+        self.groups([size[0].div_ceil(8), size[1].div_ceil(8), 1]);
+    }
+
+    /// Runs as many groups as the three words at `index` of `arguments` say.
+    pub(crate) fn threads_indirect(mut self, arguments: BufferRef<u32>, index: usize) {
+        self.pass.others.push(arguments.access(BufferUse::Indirect));
+        self.graph.resources[arguments.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
+        self.add(Work::DispatchIndirect { buffer: arguments.id, offset: index as u64 * 4 });
+    }
+
+    /// Draws the scene.
+    pub(crate) fn draw(mut self, list: DrawList) {
+        self.pass.dependence = list.dependence;
+        self.add(Work::Draw(Draws::Meshes(Box::new(list))));
+    }
+
+    /// Draws `vertices` vertices without vertex buffers, `instances` times.
+    #[allow(dead_code, reason = "full-screen and point passes of the methods to come")]
+    pub(crate) fn vertices(self, vertices: u32, instances: u32) {
+        self.add(Work::Draw(Draws::Vertices { vertices, instances }));
+    }
+
+    /// Draws as the `count` commands at word `index` of `arguments` say.
+    #[allow(dead_code, reason = "photon batches of the methods to come")]
+    pub(crate) fn draw_indirect(mut self, arguments: BufferRef<u32>, index: usize, count: u32) {
+        self.pass.others.push(arguments.access(BufferUse::Indirect));
+        self.add(Work::Draw(Draws::Indirect { buffer: arguments.id, offset: index as u64 * 4, count }));
+    }
+}

@@ -1,0 +1,167 @@
+//! What stands between frames: the memory behind the graph's names, what it holds, and how it was last used.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::barriers::State;
+use super::{Body, Resource};
+use crate::vulkan::{Buffer, Device, Image, ImageInfo, Location, Pipelines, Queries, Recorder, VulkanError};
+
+pub(super) struct StoredImage {
+    pub(super) image: Arc<Image>,
+    pub(super) usage: vk::ImageUsageFlags,
+    /// For each mip level.
+    pub(super) states: Vec<State>,
+    /// For each mip level: the key of its content, if it has one.
+    pub(super) keys: Vec<Option<u64>>,
+    pub(super) piece: String,
+}
+
+pub(super) struct StoredBuffer {
+    pub(super) buffer: Arc<Buffer>,
+    pub(super) usage: vk::BufferUsageFlags,
+    pub(super) bytes: u64,
+    pub(super) upload: bool,
+    pub(super) state: State,
+    pub(super) key: Option<u64>,
+    pub(super) piece: String,
+}
+
+/// Memory, pipelines and queries of one renderer.
+pub(crate) struct Store {
+    pub(super) device: Arc<Device>,
+    pub(super) pipelines: Pipelines,
+    pub(super) recorder: Recorder,
+    pub(super) queries: Queries,
+    pub(super) images: HashMap<String, StoredImage>,
+    pub(super) buffers: HashMap<String, StoredBuffer>,
+    /// One word for each pass of the frame, written when it has finished.
+    pub(super) markers: Buffer,
+    /// Work counters and indirect arguments, copied here for the host.
+    pub(super) counters: Buffer,
+    pub(super) read_back: Option<Buffer>,
+}
+
+/// Passes of a frame for which there are timestamps, markers and counters.
+pub(super) const MAX_PASSES: u32 = 512;
+pub(super) const MAX_COUNTERS: u64 = 1024;
+
+impl Store {
+    pub(crate) fn new(device: &Arc<Device>) -> Result<Store, VulkanError> {
+        let host_visible = |name: &str, bytes| Buffer::new(device, name, bytes, vk::BufferUsageFlags::TRANSFER_DST, Location::ReadBack);
+        Ok(Store {
+            device: device.clone(),
+            pipelines: Pipelines::new(device),
+            recorder: Recorder::new(device)?,
+            queries: Queries::new(device, 2 * MAX_PASSES + 2)?,
+            images: HashMap::new(),
+            buffers: HashMap::new(),
+            markers: host_visible("crash markers", u64::from(MAX_PASSES) * 4)?,
+            counters: host_visible("work counters", MAX_COUNTERS * 4)?,
+            read_back: None,
+        })
+    }
+
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    pub(crate) fn pipelines(&self) -> &Pipelines {
+        &self.pipelines
+    }
+
+    /// Forgets all contents, so that everything asked for is made anew. Memory stays.
+    pub(crate) fn invalidate(&mut self) {
+        for image in self.images.values_mut() {
+            image.keys.fill(None);
+        }
+        for buffer in self.buffers.values_mut() {
+            buffer.key = None;
+        }
+    }
+
+    /// The key of what the named image holds, if it has this shape.
+    pub(super) fn image_key(&self, name: &str, info: &ImageInfo, mip: u32) -> Option<u64> {
+        let stored = self.images.get(name).filter(|stored| stored.image.info == *info)?;
+        stored.keys[mip as usize]
+    }
+
+    /// The key of what the named buffer holds, if it has this size.
+    pub(super) fn buffer_key(&self, name: &str, bytes: u64) -> Option<u64> {
+        self.buffers.get(name).filter(|stored| stored.bytes == bytes)?.key
+    }
+
+    /// Whether the memory behind `resource` can serve this frame's uses.
+    pub(super) fn fits(&self, resource: &Resource) -> bool {
+        match &resource.body {
+            Body::Image(info) => self.images.get(&resource.name).is_some_and(|stored| stored.image.info == *info && stored.usage.contains(resource.image_usage)),
+            Body::Buffer { bytes } => self
+                .buffers
+                .get(&resource.name)
+                .is_some_and(|stored| !stored.upload && stored.bytes == *bytes && stored.usage.contains(resource.buffer_usage)),
+            Body::Upload(data) => self
+                .buffers
+                .get(&resource.name)
+                .is_some_and(|stored| stored.upload && stored.bytes == data.len() as u64 && stored.usage.contains(resource.buffer_usage)),
+            Body::ExternalBuffer(_) | Body::ExternalImage(_) => true,
+        }
+    }
+
+    /// Makes the memory behind `resource` fit for this frame's uses.
+    pub(super) fn provide(&mut self, resource: &Resource) -> Result<(), VulkanError> {
+        if self.fits(resource) {
+            return Ok(());
+        }
+        let piece = resource.piece.clone().unwrap_or_default();
+        let name = &resource.name;
+        match &resource.body {
+            Body::Image(info) => {
+                // The old memory is returned first: the two need not fit side by side.
+                let old = self.images.remove(name).map_or(vk::ImageUsageFlags::empty(), |stored| stored.usage);
+                let usage = resource.image_usage | old;
+                let image = Image::new(&self.device, name, *info, usage, vk::ImageCreateFlags::empty())?;
+                let mips = info.mips as usize;
+                let stored = StoredImage { image: Arc::new(image), usage, states: vec![State::default(); mips], keys: vec![None; mips], piece };
+                self.images.insert(name.clone(), stored);
+            }
+            Body::Buffer { bytes } => self.provide_buffer(name, *bytes, resource.buffer_usage, Location::Device, piece)?,
+            Body::Upload(data) => self.provide_buffer(name, data.len() as u64, resource.buffer_usage, Location::Upload, piece)?,
+            Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}
+        }
+        Ok(())
+    }
+
+    fn provide_buffer(&mut self, name: &str, bytes: u64, usage: vk::BufferUsageFlags, location: Location, piece: String) -> Result<(), VulkanError> {
+        let old = self.buffers.remove(name).map_or(vk::BufferUsageFlags::empty(), |stored| stored.usage);
+        let usage = usage | old;
+        let limit = u64::from(self.device.limits().max_storage_buffer_range);
+        if usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && bytes > limit {
+            let mib = |bytes: u64| format!("{} MiB", bytes >> 20);
+            return Err(VulkanError::TooLarge { what: name.to_owned(), asked: mib(bytes), limit: mib(limit) });
+        }
+        let buffer = Arc::new(Buffer::new(&self.device, name, bytes, usage, location)?);
+        let upload = location == Location::Upload;
+        self.buffers.insert(name.to_owned(), StoredBuffer { buffer, usage, bytes, upload, state: State::default(), key: None, piece });
+        Ok(())
+    }
+
+    /// Returns the memory of names that a frame no longer declares.
+    pub(super) fn retain(&mut self, keep: impl Fn(&str) -> bool) {
+        self.images.retain(|name, _| keep(name));
+        self.buffers.retain(|name, _| keep(name));
+    }
+
+    /// Bytes that each piece's images and buffers hold.
+    pub(crate) fn memory_by_piece(&self) -> std::collections::BTreeMap<String, u64> {
+        let mut bytes = std::collections::BTreeMap::new();
+        for stored in self.images.values() {
+            *bytes.entry(stored.piece.clone()).or_default() += stored.image.bytes();
+        }
+        for stored in self.buffers.values() {
+            *bytes.entry(stored.piece.clone()).or_default() += stored.buffer.bytes();
+        }
+        bytes
+    }
+}

@@ -1,0 +1,187 @@
+//! The logical device: chosen, created, and shared by everything made on it.
+
+#![allow(unsafe_code, reason = "creation and destruction of the device")]
+
+use std::collections::BTreeMap;
+use std::mem::ManuallyDrop;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use ash::{ext, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+
+use super::error::{Called, VulkanError};
+use super::instance::{Instance, Validation};
+use super::report::{self, DeviceReport, Survey};
+
+/// Which device, and how closely it is watched.
+#[derive(Clone, Debug, Default)]
+pub struct ContextOptions {
+    /// A part of the device's name, or its index; `None`: the first discrete GPU, else integrated, else CPU.
+    pub device: Option<String>,
+    /// What the validation layer checks.
+    pub validation: Validation,
+}
+
+/// A logical device with one queue for everything. Shared by `Arc` with all that is made on it, and so destroyed last.
+pub(crate) struct Device {
+    pub(crate) raw: ash::Device,
+    pub(crate) queue: Mutex<vk::Queue>,
+    pub(crate) survey: Survey,
+    pub(crate) labels: Option<ext::debug_utils::Device>,
+    allocator: ManuallyDrop<Mutex<Allocator>>,
+    live: Mutex<BTreeMap<u64, (String, u64)>>,
+    next_id: AtomicU64,
+    // Destroyed after the device.
+    instance: Instance,
+}
+
+impl Device {
+    pub(crate) fn new(options: &ContextOptions) -> Result<Arc<Device>, VulkanError> {
+        let instance = Instance::new(options.validation)?;
+        let (physical, survey) = choose(&instance, options.device.as_deref())?;
+        let priorities = [1.0];
+        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(survey.queue_family).queue_priorities(&priorities)];
+        let core = vk::PhysicalDeviceFeatures {
+            geometry_shader: vk::TRUE,
+            fragment_stores_and_atomics: vk::TRUE,
+            draw_indirect_first_instance: vk::TRUE,
+            independent_blend: vk::TRUE,
+            // Optional ones: used where present.
+            multi_draw_indirect: survey.features.multi_draw_indirect,
+            pipeline_statistics_query: survey.features.pipeline_statistics_query,
+            sampler_anisotropy: survey.features.sampler_anisotropy,
+            // GPU-assisted validation counts in vertex shaders and with 64-bit integers.
+            vertex_pipeline_stores_and_atomics: survey.features.vertex_pipeline_stores_and_atomics,
+            shader_int64: if options.validation == Validation::GpuAssisted { survey.features.shader_int64 } else { vk::FALSE },
+            ..Default::default()
+        };
+        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).dynamic_rendering(true).maintenance4(true);
+        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
+        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&core).push_next(&mut vulkan13).push_next(&mut vulkan12);
+        // SAFETY: the physical device belongs to the instance; the features were found present by the survey.
+        let raw = unsafe { instance.raw.create_device(physical, &info, None) }.called("vkCreateDevice")?;
+        // SAFETY: the family and its queue 0 were asked for above.
+        let queue = unsafe { raw.get_device_queue(survey.queue_family, 0) };
+        let labels = instance.debug.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
+        let description = AllocatorCreateDesc {
+            instance: instance.raw.clone(),
+            device: raw.clone(),
+            physical_device: physical,
+            debug_settings: gpu_allocator::AllocatorDebugSettings { log_memory_information: false, log_leaks_on_shutdown: false, ..Default::default() },
+            buffer_device_address: false,
+            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+        };
+        let allocator = Allocator::new(&description).map_err(|error| {
+            tracing::error!("gpu-allocator: {error}");
+            VulkanError::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, last_pass: "none".to_owned() }
+        });
+        let allocator = match allocator {
+            Ok(allocator) => ManuallyDrop::new(Mutex::new(allocator)),
+            Err(error) => {
+                // SAFETY: nothing else was made on the device.
+                unsafe { raw.destroy_device(None) };
+                return Err(error);
+            }
+        };
+        let device = Device {
+            raw,
+            queue: Mutex::new(queue),
+            survey,
+            labels,
+            allocator,
+            live: Mutex::default(),
+            next_id: AtomicU64::new(1),
+            instance,
+        };
+        Ok(Arc::new(device))
+    }
+
+    pub(crate) fn report(&self) -> &DeviceReport {
+        &self.survey.report
+    }
+
+    pub(crate) fn is_cpu(&self) -> bool {
+        self.survey.properties.device_type == vk::PhysicalDeviceType::CPU
+    }
+
+    pub(crate) fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.survey.properties.limits
+    }
+
+    pub(crate) fn messages(&self) -> Vec<String> {
+        self.instance.messages()
+    }
+
+    pub(crate) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        self.allocator.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes that an allocation lives; its number names it to [`Device::forget`].
+    pub(crate) fn register(&self, name: &str, bytes: u64) -> u64 {
+        let id = self.next_id.fetch_add(1, Ordering::Relaxed);
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).insert(id, (name.to_owned(), bytes));
+        id
+    }
+
+    pub(crate) fn forget(&self, id: u64) {
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).remove(&id);
+    }
+
+    /// Names and bytes of all allocations that live, in the order of their making.
+    pub(crate) fn live_allocations(&self) -> Vec<(String, u64)> {
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).values().cloned().collect()
+    }
+
+    /// Gives an object the name that tools and messages show.
+    pub(crate) fn set_name(&self, object: impl vk::Handle, name: &str) {
+        let (Some(labels), Ok(name)) = (&self.labels, std::ffi::CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: the object was made on this device and is alive in the caller's hands. A refused name loses nothing.
+        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        for (name, bytes) in self.live_allocations() {
+            tracing::error!("leak: {name} ({bytes} bytes) outlives its device");
+        }
+        // SAFETY: every object made on the device holds it by `Arc`, so none is left; the allocator goes first, since
+        // it frees its memory blocks through the device.
+        unsafe {
+            let _ = self.raw.device_wait_idle();
+            ManuallyDrop::drop(&mut self.allocator);
+            self.raw.destroy_device(None);
+        }
+    }
+}
+
+fn choose(instance: &Instance, asked: Option<&str>) -> Result<(vk::PhysicalDevice, Survey), VulkanError> {
+    let surveys = report::survey(instance)?;
+    if surveys.is_empty() {
+        return Err(VulkanError::NoDevice);
+    }
+    let names = surveys.iter().map(|(_, survey)| format!("{} {}", survey.report.index, survey.report.name)).collect::<Vec<_>>().join(", ");
+    let unfit = |survey: &Survey| match &survey.report.unfit {
+        Some(reason) => Err(VulkanError::Unfit { device: survey.report.name.clone(), reason: reason.clone() }),
+        None => Ok(()),
+    };
+    let Some(asked) = asked else {
+        let first_reason = unfit(&surveys[0].1);
+        return match surveys.into_iter().find(|(_, survey)| survey.report.default) {
+            Some(chosen) => Ok(chosen),
+            None => Err(first_reason.err().unwrap_or(VulkanError::NoDevice)),
+        };
+    };
+    let wanted = asked.to_lowercase();
+    let matches = |survey: &Survey| survey.report.name.to_lowercase().contains(&wanted);
+    let position = match asked.parse::<usize>() {
+        Ok(index) if index < surveys.len() => Some(index),
+        _ => surveys.iter().position(|(_, survey)| matches(survey)),
+    };
+    match position.and_then(|position| surveys.into_iter().nth(position)) {
+        Some((device, survey)) => unfit(&survey).map(|()| (device, survey)),
+        None => Err(VulkanError::NoSuchDevice { asked: asked.to_owned(), known: names }),
+    }
+}

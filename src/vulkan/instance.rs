@@ -1,0 +1,156 @@
+//! The loader, the instance, and the validation messages it collects.
+
+#![allow(unsafe_code, reason = "calls into the Vulkan loader")]
+
+use std::ffi::{CStr, c_void};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ash::{ext, vk};
+
+use super::error::{Called, VulkanError};
+
+/// How much the validation layer checks. Every message it gives fails a test.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Validation {
+    /// No layer.
+    #[default]
+    Off,
+    /// Usage of the interface.
+    Core,
+    /// Usage and synchronization.
+    Synchronization,
+    /// Usage, and shaders instrumented to check their memory accesses. Slow.
+    GpuAssisted,
+}
+
+const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// Messages of the validation layer, warnings and worse.
+pub(crate) type Messages = Arc<Mutex<Vec<String>>>;
+
+/// The loader and an instance of it. Owned by the device; destroyed after it.
+pub(crate) struct Instance {
+    pub(crate) raw: ash::Instance,
+    pub(crate) debug: bool,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    // The messenger's callback points into this.
+    messages: Messages,
+    // The loaded library must outlive every function pointer taken from it.
+    _entry: ash::Entry,
+}
+
+impl Instance {
+    pub(crate) fn new(validation: Validation) -> Result<Instance, VulkanError> {
+        // SAFETY: the loader is the system's Vulkan library; its initialisers have no precondition.
+        let entry = unsafe { ash::Entry::load() }.map_err(|error| VulkanError::NoLoader(error.to_string()))?;
+        // SAFETY: the entry is loaded.
+        let version = unsafe { entry.try_enumerate_instance_version() }.called("vkEnumerateInstanceVersion")?.unwrap_or(vk::API_VERSION_1_0);
+        if version < vk::API_VERSION_1_3 {
+            return Err(VulkanError::OldLoader(version_text(version)));
+        }
+        // SAFETY: the entry is loaded; no layer is named.
+        let available = unsafe { entry.enumerate_instance_extension_properties(None) }.called("vkEnumerateInstanceExtensionProperties")?;
+        let has = |wanted: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(wanted));
+        let layers = if validation == Validation::Off { vec![] } else { vec![validation_layer(&entry)?.as_ptr()] };
+        // Drivers and the validation layer both offer debug labels; without them frames lack names, nothing else.
+        let debug = has(ext::debug_utils::NAME) || validation != Validation::Off;
+        let mut extensions = Vec::new();
+        if debug {
+            extensions.push(ext::debug_utils::NAME.as_ptr());
+        }
+        let application = vk::ApplicationInfo::default().application_name(c"irradia").engine_name(c"irradia").api_version(vk::API_VERSION_1_3);
+        let enabled = match validation {
+            Validation::Synchronization => vec![vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION],
+            Validation::GpuAssisted => {
+                vec![vk::ValidationFeatureEnableEXT::GPU_ASSISTED, vk::ValidationFeatureEnableEXT::GPU_ASSISTED_RESERVE_BINDING_SLOT]
+            }
+            Validation::Off | Validation::Core => vec![],
+        };
+        let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
+        let mut info =
+            vk::InstanceCreateInfo::default().application_info(&application).enabled_extension_names(&extensions).enabled_layer_names(&layers);
+        if validation != Validation::Off {
+            info = info.push_next(&mut features);
+        }
+        // SAFETY: everything `info` points to lives until the end of this function.
+        let raw = unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
+            vk::Result::ERROR_INCOMPATIBLE_DRIVER => VulkanError::NoDevice,
+            result => VulkanError::Call { call: "vkCreateInstance".to_owned(), result },
+        })?;
+        let messages = Messages::default();
+        let mut instance = Instance { raw, debug, messenger: None, messages, _entry: entry };
+        if validation != Validation::Off {
+            instance.collect_messages()?;
+        }
+        Ok(instance)
+    }
+
+    fn collect_messages(&mut self) -> Result<(), VulkanError> {
+        use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
+        use vk::DebugUtilsMessageTypeFlagsEXT as Kind;
+        let functions = ext::debug_utils::Instance::new(&self._entry, &self.raw);
+        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
+            .message_severity(Severity::WARNING | Severity::ERROR)
+            .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
+            .pfn_user_callback(Some(on_message))
+            .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
+        // SAFETY: the user data is owned by `self` and outlives the messenger, which `drop` destroys first.
+        let messenger = unsafe { functions.create_debug_utils_messenger(&info, None) }.called("vkCreateDebugUtilsMessengerEXT")?;
+        self.messenger = Some((functions, messenger));
+        Ok(())
+    }
+
+    /// The messages so far.
+    pub(crate) fn messages(&self) -> Vec<String> {
+        self.messages.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    pub(crate) fn physical_devices(&self) -> Result<Vec<vk::PhysicalDevice>, VulkanError> {
+        // SAFETY: the instance is alive.
+        unsafe { self.raw.enumerate_physical_devices() }.called("vkEnumeratePhysicalDevices")
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: the device, the only other user, is destroyed before its instance (field order in `Device`).
+        unsafe {
+            if let Some((functions, messenger)) = self.messenger.take() {
+                functions.destroy_debug_utils_messenger(messenger, None);
+            }
+            self.raw.destroy_instance(None);
+        }
+    }
+}
+
+fn validation_layer(entry: &ash::Entry) -> Result<&'static CStr, VulkanError> {
+    // SAFETY: the entry is loaded.
+    let layers = unsafe { entry.enumerate_instance_layer_properties() }.called("vkEnumerateInstanceLayerProperties")?;
+    let found = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(LAYER));
+    if found { Ok(LAYER) } else { Err(VulkanError::NoValidationLayer) }
+}
+
+/// `1.3.230` from Vulkan's packed form.
+pub(crate) fn version_text(version: u32) -> String {
+    format!("{}.{}.{}", vk::api_version_major(version), vk::api_version_minor(version), vk::api_version_patch(version))
+}
+
+/// SAFETY: called by the validation layer with valid data, and with the user data given at creation.
+unsafe extern "system" fn on_message(
+    _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    user: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: `user` is the `Mutex` inside `Instance::messages`, alive as long as the messenger.
+    let messages = unsafe { &*user.cast::<Mutex<Vec<String>>>() };
+    // SAFETY: the layer passes valid data, its message a string that ends in zero, or null.
+    let text = unsafe { data.as_ref().and_then(|data| data.message_as_c_str()) }.map(CStr::to_string_lossy).unwrap_or_default();
+    // GPU-assisted validation announces what it reserves and which features it turns on; that is no finding.
+    let announcement = ["reserved a descriptor", "Forcing vertexPipelineStoresAndAtomics", "Forcing fragmentStoresAndAtomics", "Forcing shaderInt64"];
+    if !text.contains("WARNING-Setting") && !announcement.iter().any(|part| text.contains(part)) {
+        tracing::warn!("validation: {text}");
+        messages.lock().unwrap_or_else(PoisonError::into_inner).push(text.into_owned());
+    }
+    vk::FALSE
+}

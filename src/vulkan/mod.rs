@@ -1,0 +1,30 @@
+//! Vulkan, made safe enough for the rest of the crate: with `capi/` the only home of `unsafe`.
+//!
+//! What is created here frees itself, carries a name, and keeps its device alive. Lifetimes of use are the frame's:
+//! one frame is in flight at a time, and nothing is freed or overwritten before its fence has been waited for
+//! ([`Recorder::finish`] waits), which is the invariant that most `SAFETY` comments below lean on.
+
+mod device;
+mod error;
+mod instance;
+mod memory;
+mod pipelines;
+pub(crate) mod program;
+mod queries;
+mod recorder;
+mod report;
+mod transfer;
+
+pub use device::ContextOptions;
+pub(crate) use device::Device;
+pub use error::VulkanError;
+pub use instance::Validation;
+pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
+pub(crate) use pipelines::{
+    DepthState, Pipeline, Pipelines, RasterState, SamplerKind, TargetFormats, VertexAttribute, VertexLayout, pipeline_stages,
+};
+pub(crate) use queries::Queries;
+pub(crate) use recorder::{Attachment, Attachments, Barriers, Descriptor, ImageBarrier, MaterialSets, Recorder, Scope};
+pub use report::DeviceReport;
+pub(crate) use report::devices;
+pub(crate) use transfer::{buffer_with, image_with};
