@@ -1,1 +1,3 @@
 //! irradia: a headless Vulkan engine for global illumination.
+
+pub mod scene;
