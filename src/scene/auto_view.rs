@@ -2,7 +2,8 @@
 //!
 //! Views from outside that frame the whole scene are tried in turn. Each is drawn in 64×64 pixels with a depth buffer, and taken
 //! if most of what it shows are front faces: an object, or a box seen through its open side. If every side shows backs, the
-//! scene is an interior, and the view stands inside it.
+//! scene is an interior, and the view stands inside it. Only the winding counts: the walls of a room are often double-sided, but
+//! their fronts look inwards all the same.
 
 use super::Scene;
 use super::camera::{CameraView, Projection};
@@ -33,10 +34,7 @@ const OUTSIDE: [(DVec3, DVec3); 7] = [
 ];
 
 /// A triangle relative to the scene's middle, in units of its radius, counter-clockwise as seen from the front.
-struct Triangle {
-    corners: [Vec3; 3],
-    double_sided: bool,
-}
+struct Triangle([Vec3; 3]);
 
 /// The view of [`Scene::camera_view`] for a scene without cameras.
 pub(super) fn find(scene: &Scene) -> CameraView {
@@ -131,7 +129,6 @@ fn triangles(scene: &Scene, center: DVec3, radius: f64) -> Vec<Triangle> {
         .sum();
     let stride = count.div_ceil(MOST_TRIANGLES).max(1) as usize;
     let all = scene.instances().par_iter().flat_map_iter(|it| {
-        let double_sided = scene.material_of(it).double_sided;
         scene
             .primitive(it)
             .triangles()
@@ -143,10 +140,7 @@ fn triangles(scene: &Scene, center: DVec3, radius: f64) -> Vec<Triangle> {
                 if it.flips_winding {
                     corners.swap(1, 2);
                 }
-                Triangle {
-                    corners,
-                    double_sided,
-                }
+                Triangle(corners)
             })
     });
     all.collect()
@@ -159,8 +153,8 @@ fn share_of_fronts(triangles: &[Triangle], view: &CameraView, center: DVec3, rad
     let scale = SIZE as f32 * 0.5 / ((OUTSIDE_FOV_DEGREES * 0.5).to_radians().tan() as f32);
     // Nearest 1/distance so far, and whether a front face showed it.
     let mut pixels = vec![(0.0f32, false); SIZE * SIZE];
-    for triangle in triangles {
-        let seen = triangle.corners.map(|corner| to_view * (corner - eye));
+    for Triangle(corners) in triangles {
+        let seen = corners.map(|corner| to_view * (corner - eye));
         if seen.iter().any(|corner| corner.z > -1e-4) {
             continue;
         }
@@ -174,7 +168,7 @@ fn share_of_fronts(triangles: &[Triangle], view: &CameraView, center: DVec3, rad
         });
         // Twice the signed area in the picture; y points down, so front faces are negative.
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        let front = triangle.double_sided || area < 0.0;
+        let front = area < 0.0;
         let mut show = |x: usize, y: usize, inverse_depth: f32| {
             let pixel = &mut pixels[y * SIZE + x];
             if inverse_depth > pixel.0 {
