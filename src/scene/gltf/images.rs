@@ -1,0 +1,213 @@
+//! Images: found, checked against limits, decoded in parallel, and shared by the textures that use them.
+
+use super::Loader;
+use super::document::{self, get};
+use crate::scene::{Texture, TextureId, Wrap};
+use image::{ImageReader, Limits};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Longest side of an image in texels.
+const LARGEST_SIDE: u32 = 16_384;
+/// Bytes of all decoded textures of a scene.
+const LARGEST_TOTAL: u64 = 4 << 30;
+/// Texels that a byte of an image file can stand for: deflate reaches 1032 to 1, and a byte of a PNG holds up to 8 texels.
+const TEXELS_PER_BYTE: u64 = 8 * 1032;
+
+/// Where an image's bytes are.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Source<'a> {
+    View(usize),
+    Uri(&'a str),
+}
+
+/// All in which two textures can differ.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key<'a> {
+    source: Source<'a>,
+    wrap: [Wrap; 2],
+    nearest: bool,
+    srgb: bool,
+}
+
+/// The textures that materials asked for so far, in the order of their ids.
+#[derive(Default)]
+pub(super) struct TextureRequests<'a> {
+    ids: HashMap<Key<'a>, TextureId>,
+    requests: Vec<(Key<'a>, String)>,
+}
+
+struct Decoded {
+    width: u32,
+    height: u32,
+    rgba8: Vec<u8>,
+}
+
+impl<'a> Loader<'a> {
+    /// The id that texture `index` will have when it is used as colour (`srgb`) or as data. `None` if it has no image that the
+    /// core of glTF can read.
+    pub(super) fn request_texture(
+        &self,
+        index: usize,
+        srgb: bool,
+        requests: &mut TextureRequests<'a>,
+    ) -> Result<Option<TextureId>, String> {
+        let document = self.document;
+        let texture = get(&document.textures, index, "texture")?;
+        let Some(source) = texture.source else {
+            return Ok(None);
+        };
+        let image = get(&document.images, source, "image")?;
+        let default_sampler = document::Sampler::default();
+        let sampler = texture.sampler.map_or(Ok(&default_sampler), |sampler| {
+            get(&document.samplers, sampler, "sampler")
+        })?;
+        let source = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => Source::View(view),
+            (None, Some(uri)) => Source::Uri(uri),
+            (None, None) => {
+                return Err(format!(
+                    "image {source} has neither a uri nor a buffer view"
+                ));
+            }
+        };
+        let key = Key {
+            source,
+            wrap: [wrap(sampler.wrap_s), wrap(sampler.wrap_t)],
+            nearest: sampler.mag_filter == Some(9728),
+            srgb,
+        };
+        let next = TextureId(requests.ids.len());
+        Ok(Some(*requests.ids.entry(key).or_insert_with(|| {
+            let name = texture
+                .name
+                .clone()
+                .or(image.name.clone())
+                .unwrap_or_default();
+            requests.requests.push((key, name));
+            next
+        })))
+    }
+
+    /// Decodes every image that was asked for and adds the textures.
+    pub(super) fn add_textures(&mut self, requests: TextureRequests<'a>) -> Result<(), String> {
+        let mut uses: HashMap<Source, usize> = HashMap::new();
+        requests
+            .requests
+            .iter()
+            .for_each(|(key, _)| *uses.entry(key.source).or_default() += 1);
+        let mut sources: Vec<Source> = Vec::new();
+        for (key, _) in &requests.requests {
+            if !sources.contains(&key.source) {
+                sources.push(key.source);
+            }
+        }
+        let total = AtomicU64::new(0);
+        let decoded = sources.par_iter().map(|&source| {
+            let what = match source {
+                Source::View(view) => format!("the image in buffer view {view}"),
+                Source::Uri(uri) => {
+                    format!("the image {:?}", uri.chars().take(60).collect::<String>())
+                }
+            };
+            self.decode(source, uses[&source] as u64, &total)
+                .map_err(|fault| format!("{what}: {fault}"))
+        });
+        let decoded: Vec<Decoded> = decoded.collect::<Result<_, String>>()?;
+        let mut images: HashMap<Source, Decoded> = sources.into_iter().zip(decoded).collect();
+        for (key, name) in requests.requests {
+            let Some(image) = images.get_mut(&key.source) else {
+                continue;
+            };
+            let left = uses.entry(key.source).or_default();
+            *left -= 1;
+            let rgba8 = if *left == 0 {
+                std::mem::take(&mut image.rgba8)
+            } else {
+                image.rgba8.clone()
+            };
+            let (width, height) = (image.width, image.height);
+            let texture = Texture {
+                name,
+                width,
+                height,
+                rgba8,
+                wrap: key.wrap,
+                nearest: key.nearest,
+                srgb: key.srgb,
+            };
+            self.scene
+                .add_texture(texture)
+                .map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn decode(&self, source: Source, copies: u64, total: &AtomicU64) -> Result<Decoded, String> {
+        let file;
+        let bytes = match source {
+            Source::View(view) => self.storage.view(self.document, view)?,
+            Source::Uri(uri) => {
+                file = self.storage.resolve(uri)?;
+                &file
+            }
+        };
+        let reader = || {
+            let mut reader = ImageReader::new(Cursor::new(bytes))
+                .with_guessed_format()
+                .map_err(|error| error.to_string())?;
+            if reader.format().is_none() {
+                return Err("it is neither PNG nor JPEG".to_owned());
+            }
+            let mut limits = Limits::default();
+            limits.max_image_width = Some(LARGEST_SIDE);
+            limits.max_image_height = Some(LARGEST_SIDE);
+            limits.max_alloc = Some(LARGEST_TOTAL);
+            reader.limits(limits);
+            Ok(reader)
+        };
+        // The header alone is read first: what it claims decides whether anything is allocated.
+        let (width, height) = reader()?
+            .into_dimensions()
+            .map_err(|error| error.to_string())?;
+        let texels = u64::from(width) * u64::from(height);
+        if width.max(height) > LARGEST_SIDE
+            || texels > TEXELS_PER_BYTE.saturating_mul(bytes.len() as u64)
+        {
+            return Err(format!(
+                "its {} bytes claim {width}×{height} texels, which cannot be",
+                bytes.len()
+            ));
+        }
+        let claimed = texels * 4 * copies;
+        if total
+            .fetch_add(claimed, Ordering::Relaxed)
+            .saturating_add(claimed)
+            > LARGEST_TOTAL
+        {
+            return Err(format!(
+                "the scene's textures need more than {} GiB; make them smaller",
+                LARGEST_TOTAL >> 30
+            ));
+        }
+        let image = reader()?
+            .decode()
+            .map_err(|error| format!("it cannot be decoded ({error})"))?;
+        let rgba = image.into_rgba8();
+        Ok(Decoded {
+            width: rgba.width(),
+            height: rgba.height(),
+            rgba8: rgba.into_raw(),
+        })
+    }
+}
+
+fn wrap(code: Option<u64>) -> Wrap {
+    match code {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}

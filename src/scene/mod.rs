@@ -1,0 +1,65 @@
+//! Scenes: what there is to light, and from where it is seen. Knows no Vulkan.
+//!
+//! A [`Scene`] comes from a glTF file ([`Scene::open`], [`Scene::load`]) or is built in memory ([`Scene::empty`]). Nodes place
+//! meshes, lights and cameras; all of them can be moved or changed between frames, and [`Scene::revisions`] counts the changes by
+//! kind, so that whoever holds something derived from the scene knows when it is stale.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `world` | the [`Scene`]: nodes, transforms, instances, revisions |
+//! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
+//! | `facts` | what it contains, which decides what need not run |
+//! | `emitters` | emissive surfaces as a bounded number of point emitters |
+//! | `auto_view` | a view of a scene that has no camera |
+//! | `gltf/` | reading files |
+//! | `builtin` | the scenes that come with irradia |
+//!
+//! Units are metres, radians, seconds and watts; colours are linear Rec. 709. Transforms are f64 throughout.
+
+mod animation;
+mod auto_view;
+mod builtin;
+mod camera;
+mod emitters;
+mod error;
+mod facts;
+mod gltf;
+mod light;
+mod material;
+mod mesh;
+mod tangents;
+mod world;
+
+pub use animation::{Animation, Channel, Interpolation, Property};
+pub use builtin::builtin_names;
+pub use camera::{Camera, CameraView, Projection};
+pub use emitters::EmitterSample;
+pub use error::SceneError;
+pub use facts::Facts;
+pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
+pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
+pub use mesh::{Bounds, Instance, Mesh, Primitive};
+pub use world::{Node, Revisions, Scene};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $id:ident,)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $id(pub usize);
+    )*};
+}
+
+ids! {
+    /// Index into [`Scene::meshes`].
+    MeshId,
+    /// Index into [`Scene::materials`].
+    MaterialId,
+    /// Index into [`Scene::textures`].
+    TextureId,
+    /// Index into [`Scene::nodes`].
+    NodeId,
+    /// Index into [`Scene::lights`].
+    LightId,
+    /// Index into [`Scene::cameras`].
+    CameraId,
+}

@@ -1,0 +1,565 @@
+//! The scene: a hierarchy of nodes that place meshes, lights and cameras, and the counting of what changed.
+//!
+//! Parents always come before their children in `nodes`, so one pass in order composes all transforms and no walk recurses.
+
+use super::animation::{Animation, Pose};
+use super::camera::Camera;
+use super::light::{Light, LightSpec, PlacedLight};
+use super::material::{Material, Texture};
+use super::mesh::{Bounds, Instance, Mesh, bounds_of};
+use super::{CameraId, LightId, MaterialId, MeshId, NodeId, SceneError, TextureId};
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
+use std::sync::OnceLock;
+
+/// Frames per second of [`Scene::set_frame`].
+const FRAME_RATE: f64 = 30.0;
+
+/// A place in the hierarchy, and what stands there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Node {
+    /// Name in the file; empty if it has none.
+    pub name: String,
+    /// The node in whose space `local` is given; `None`: the world.
+    pub parent: Option<NodeId>,
+    /// Node space to parent space; finite.
+    pub local: DAffine3,
+    /// A mesh that stands here.
+    pub mesh: Option<MeshId>,
+    /// A light that shines along -Z from here.
+    pub light: Option<LightId>,
+    /// A camera that looks along -Z from here.
+    pub camera: Option<CameraId>,
+}
+
+/// How often each kind of thing changed. Equal counts mean that nothing of the kind changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Revisions {
+    /// Meshes and where they stand.
+    pub geometry: u64,
+    /// Materials and textures.
+    pub materials: u64,
+    /// Punctual lights, emissive surfaces (their radiance and where they stand), the sky.
+    pub lights: u64,
+    /// Cameras and where they stand.
+    pub camera: u64,
+}
+
+/// What is lit, what lights it, and from where it is seen. See the [module](super) for an overview.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The file's stem, or the built-in scene's name.
+    pub name: String,
+    /// A line on what the scene shows or tests (`asset.extras.description` of a glTF file).
+    pub description: Option<String>,
+    /// What loading had to leave out or change, a sentence each.
+    pub warnings: Vec<String>,
+    meshes: Vec<Mesh>,
+    materials: Vec<Material>,
+    textures: Vec<Texture>,
+    nodes: Vec<Node>,
+    placements: Vec<Placement>,
+    instances: Vec<Instance>,
+    lights: Vec<Light>,
+    cameras: Vec<Camera>,
+    animations: Vec<Animation>,
+    /// Transforms of animated nodes as they were before any animation.
+    rest_poses: BTreeMap<NodeId, Pose>,
+    sky: [f32; 3],
+    revisions: Revisions,
+    bounds: OnceLock<Option<Bounds>>,
+}
+
+/// What a node's place in the world comes to.
+#[derive(Clone, Debug)]
+struct Placement {
+    world: DAffine3,
+    children: Vec<NodeId>,
+    instances: Range<usize>,
+}
+
+impl Scene {
+    /// A scene without anything in it.
+    pub fn empty(name: &str) -> Scene {
+        Scene {
+            name: name.to_owned(),
+            ..Scene::default()
+        }
+    }
+
+    /// All meshes.
+    pub fn meshes(&self) -> &[Mesh] {
+        &self.meshes
+    }
+
+    /// All materials.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// All textures.
+    pub fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// All nodes, parents before their children.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// All punctual lights; [`Scene::placed_lights`] says where they are.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// All cameras; [`Scene::camera_view`] says where they are.
+    pub fn cameras(&self) -> &[Camera] {
+        &self.cameras
+    }
+
+    /// All animations.
+    pub fn animations(&self) -> &[Animation] {
+        &self.animations
+    }
+
+    /// Radiance of the sky in W/(m² sr), alike from all directions.
+    pub fn sky(&self) -> [f32; 3] {
+        self.sky
+    }
+
+    /// All placed primitives, in the order of nodes and primitives.
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
+    }
+
+    /// How often each kind of thing changed.
+    pub fn revisions(&self) -> Revisions {
+        self.revisions
+    }
+
+    /// Node space to world space. The identity for a node that does not exist.
+    pub fn world_transform(&self, node: NodeId) -> DAffine3 {
+        self.placements
+            .get(node.0)
+            .map_or(DAffine3::IDENTITY, |placement| placement.world)
+    }
+
+    /// All placed punctual lights, in the order of nodes.
+    pub fn placed_lights(&self) -> Vec<PlacedLight> {
+        let placed = self.nodes.iter().zip(&self.placements).enumerate();
+        placed
+            .filter_map(|(index, (node, placement))| {
+                let id = node.light?;
+                let light = &self.lights[id.0];
+                Some(PlacedLight {
+                    node: NodeId(index),
+                    light: id,
+                    position: placement.world.translation,
+                    direction: (-placement.world.matrix3.z_axis)
+                        .try_normalize()
+                        .unwrap_or(DVec3::NEG_Z),
+                    kind: light.kind,
+                    intensity: light.intensity,
+                    range: light.range,
+                })
+            })
+            .collect()
+    }
+
+    /// The tight box around all triangles in world space; `None` if there are none. Cached until the geometry changes.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let all = || {
+            self.instances
+                .par_iter()
+                .filter_map(|it| bounds_of(self.primitive(it), &it.world))
+                .reduce_with(Bounds::union)
+        };
+        *self.bounds.get_or_init(all)
+    }
+
+    pub(super) fn primitive(&self, instance: &Instance) -> &super::Primitive {
+        &self.meshes[instance.mesh.0].primitives[instance.primitive]
+    }
+
+    pub(super) fn material_of(&self, instance: &Instance) -> &Material {
+        &self.materials[self.primitive(instance).material.0]
+    }
+
+    /// Adds a texture.
+    ///
+    /// # Errors
+    /// [`SceneError::InvalidObject`] if the texels do not fill its size.
+    pub fn add_texture(&mut self, texture: Texture) -> Result<TextureId, SceneError> {
+        let texels = u64::from(texture.width) * u64::from(texture.height);
+        if texels == 0 || texels * 4 != texture.rgba8.len() as u64 {
+            let fault = format!(
+                "{}×{} texels do not fit its {} bytes",
+                texture.width,
+                texture.height,
+                texture.rgba8.len()
+            );
+            return Err(self.invalid("texture", &texture.name, fault));
+        }
+        self.revisions.materials += 1;
+        self.textures.push(texture);
+        Ok(TextureId(self.textures.len() - 1))
+    }
+
+    /// Adds a material.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`] if it uses a texture that does not exist, [`SceneError::InvalidObject`] if a number is not
+    /// finite (but for the attenuation distance) or a texture coordinate set is neither 0 nor 1.
+    pub fn add_material(&mut self, material: Material) -> Result<MaterialId, SceneError> {
+        self.check_material(&material)?;
+        self.revisions.materials += 1;
+        self.materials.push(material);
+        Ok(MaterialId(self.materials.len() - 1))
+    }
+
+    /// Replaces a material. Counts as a change of the lights too if it emits or emitted.
+    ///
+    /// # Errors
+    /// As [`Scene::add_material`]; [`SceneError::UnknownId`].
+    pub fn set_material(&mut self, id: MaterialId, material: Material) -> Result<(), SceneError> {
+        self.check("material", id.0, self.materials.len())?;
+        self.check_material(&material)?;
+        let old = std::mem::replace(&mut self.materials[id.0], material);
+        let new = &self.materials[id.0];
+        if old != *new {
+            self.revisions.materials += 1;
+            self.revisions.lights += u64::from(old.emits() || new.emits());
+        }
+        Ok(())
+    }
+
+    /// Adds a mesh; a node must place it before it is seen.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`] if a primitive's material does not exist; [`SceneError::InvalidObject`] if its arrays
+    /// contradict what [`Primitive`](super::Primitive) promises.
+    pub fn add_mesh(&mut self, mesh: Mesh) -> Result<MeshId, SceneError> {
+        for (index, primitive) in mesh.primitives.iter().enumerate() {
+            self.check("material", primitive.material.0, self.materials.len())?;
+            if let Some(fault) = primitive.fault() {
+                return Err(self.invalid(
+                    "mesh",
+                    &mesh.name,
+                    format!("primitive {index}: {fault}"),
+                ));
+            }
+        }
+        self.meshes.push(mesh);
+        Ok(MeshId(self.meshes.len() - 1))
+    }
+
+    /// Adds a punctual light; a node must place it before it shines.
+    ///
+    /// # Errors
+    /// [`SceneError::InvalidObject`] if its intensity is negative or not finite, or a spot's angles are out of range.
+    pub fn add_light(&mut self, light: Light) -> Result<LightId, SceneError> {
+        self.check_light(&light)?;
+        self.lights.push(light);
+        Ok(LightId(self.lights.len() - 1))
+    }
+
+    /// Replaces a light.
+    ///
+    /// # Errors
+    /// As [`Scene::add_light`]; [`SceneError::UnknownId`].
+    pub fn set_light(&mut self, id: LightId, light: Light) -> Result<(), SceneError> {
+        self.check("light", id.0, self.lights.len())?;
+        self.check_light(&light)?;
+        self.revisions.lights += u64::from(self.lights[id.0] != light);
+        self.lights[id.0] = light;
+        Ok(())
+    }
+
+    /// Sets the sky's radiance in W/(m² sr). Channels that are negative or not finite become 0.
+    pub fn set_sky(&mut self, radiance: [f32; 3]) {
+        let radiance = radiance.map(|channel| {
+            if channel.is_finite() {
+                channel.max(0.0)
+            } else {
+                0.0
+            }
+        });
+        self.revisions.lights += u64::from(self.sky != radiance);
+        self.sky = radiance;
+    }
+
+    /// Adds a camera; a node must place it before one can look through it.
+    pub fn add_camera(&mut self, camera: Camera) -> CameraId {
+        self.cameras.push(camera);
+        CameraId(self.cameras.len() - 1)
+    }
+
+    /// Replaces a camera.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`].
+    pub fn set_camera(&mut self, id: CameraId, camera: Camera) -> Result<(), SceneError> {
+        self.check("camera", id.0, self.cameras.len())?;
+        self.revisions.camera += u64::from(self.cameras[id.0] != camera);
+        self.cameras[id.0] = camera;
+        Ok(())
+    }
+
+    /// Adds a light with its place in the world, for instance from a command line.
+    ///
+    /// # Errors
+    /// As [`Scene::add_light`] and [`Scene::add_node`].
+    pub fn add_light_spec(&mut self, spec: &LightSpec) -> Result<LightId, SceneError> {
+        let light = self.add_light(spec.light.clone())?;
+        let back = (-spec.direction).try_normalize().unwrap_or(DVec3::Z);
+        let right = back.any_orthonormal_vector();
+        let local = DAffine3 {
+            matrix3: DMat3::from_cols(right, back.cross(right), back),
+            translation: spec.position,
+        };
+        self.add_node(Node {
+            name: spec.light.name.clone(),
+            local,
+            light: Some(light),
+            ..Node::default()
+        })?;
+        Ok(light)
+    }
+
+    /// Adds a node and so whatever it places.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`] if its parent or what it places does not exist; [`SceneError::InvalidObject`] if its
+    /// transform is not finite.
+    pub fn add_node(&mut self, node: Node) -> Result<NodeId, SceneError> {
+        let referred = [
+            ("node", node.parent.map(|id| id.0), self.nodes.len()),
+            ("mesh", node.mesh.map(|id| id.0), self.meshes.len()),
+            ("light", node.light.map(|id| id.0), self.lights.len()),
+            ("camera", node.camera.map(|id| id.0), self.cameras.len()),
+        ];
+        for (kind, index, count) in referred {
+            index.map_or(Ok(()), |index| self.check(kind, index, count))?;
+        }
+        let id = NodeId(self.nodes.len());
+        let world = self.compose(&node)?;
+        let start = self.instances.len();
+        if let Some(mesh) = node.mesh {
+            let flips_winding = world.matrix3.determinant() < 0.0;
+            let count = self.meshes[mesh.0].primitives.len();
+            self.instances.extend((0..count).map(|primitive| Instance {
+                node: id,
+                mesh,
+                primitive,
+                world,
+                flips_winding,
+            }));
+        }
+        if let Some(parent) = node.parent {
+            self.placements[parent.0].children.push(id);
+        }
+        self.nodes.push(node);
+        self.placements.push(Placement {
+            world,
+            children: Vec::new(),
+            instances: start..self.instances.len(),
+        });
+        self.count_moved(&[id]);
+        Ok(id)
+    }
+
+    /// Moves a node, and with it all that hangs below it.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`]; [`SceneError::InvalidObject`] if a transform in the world would not be finite, in which case
+    /// nothing moves.
+    pub fn set_local_transform(&mut self, node: NodeId, local: DAffine3) -> Result<(), SceneError> {
+        self.check("node", node.0, self.nodes.len())?;
+        self.move_nodes(&[(node, local)])
+    }
+
+    fn move_nodes(&mut self, locals: &[(NodeId, DAffine3)]) -> Result<(), SceneError> {
+        let changed: Vec<_> = locals
+            .iter()
+            .copied()
+            .filter(|&(id, local)| self.nodes[id.0].local != local)
+            .collect();
+        let mut moved: Vec<NodeId> = changed.iter().map(|&(id, _)| id).collect();
+        let mut seen: HashSet<NodeId> = moved.iter().copied().collect();
+        let mut next = 0;
+        while let Some(&id) = moved.get(next) {
+            moved.extend(
+                self.placements[id.0]
+                    .children
+                    .iter()
+                    .filter(|child| seen.insert(**child)),
+            );
+            next += 1;
+        }
+        moved.sort_unstable(); // parents first again
+
+        let worlds_before: Vec<DAffine3> =
+            moved.iter().map(|id| self.placements[id.0].world).collect();
+        let locals_before: Vec<DAffine3> = changed
+            .iter()
+            .map(|(id, _)| self.nodes[id.0].local)
+            .collect();
+        changed
+            .iter()
+            .for_each(|&(id, local)| self.nodes[id.0].local = local);
+        for id in &moved {
+            match self.compose(&self.nodes[id.0]) {
+                Ok(world) => self.placements[id.0].world = world,
+                Err(error) => {
+                    changed
+                        .iter()
+                        .zip(locals_before)
+                        .for_each(|((id, _), local)| self.nodes[id.0].local = local);
+                    moved
+                        .iter()
+                        .zip(worlds_before)
+                        .for_each(|(id, world)| self.placements[id.0].world = world);
+                    return Err(error);
+                }
+            }
+        }
+        for id in &moved {
+            let placement = &self.placements[id.0];
+            let flips_winding = placement.world.matrix3.determinant() < 0.0;
+            for instance in &mut self.instances[placement.instances.clone()] {
+                (instance.world, instance.flips_winding) = (placement.world, flips_winding);
+            }
+        }
+        self.count_moved(&moved);
+        Ok(())
+    }
+
+    /// Puts all animated nodes where they are at a time, in seconds. Before the first and after the last keyframe they stand
+    /// still. What an animation does not touch stays; an animated node's transform is that of the file but for what is animated.
+    pub fn set_time(&mut self, seconds: f64) {
+        let mut poses = self.rest_poses.clone();
+        for channel in self
+            .animations
+            .iter()
+            .flat_map(|animation| &animation.channels)
+        {
+            if let Some(pose) = poses.get_mut(&channel.node) {
+                pose.apply(channel, seconds);
+            }
+        }
+        let locals: Vec<_> = poses
+            .iter()
+            .map(|(&node, pose)| (node, pose.transform()))
+            .collect();
+        if let Err(error) = self.move_nodes(&locals) {
+            tracing::warn!("the animation stands still at {seconds} s: {error}");
+        }
+    }
+
+    /// [`Scene::set_time`] for a frame of a sequence: frame N is at N/30 s.
+    pub fn set_frame(&mut self, frame: u32) {
+        self.set_time(f64::from(frame) / FRAME_RATE);
+    }
+
+    /// Adds an animation; the present transforms of its nodes are those from which it departs.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownId`] if it moves a node that does not exist.
+    pub fn add_animation(&mut self, animation: Animation) -> Result<(), SceneError> {
+        for channel in &animation.channels {
+            self.check("node", channel.node.0, self.nodes.len())?;
+        }
+        for channel in &animation.channels {
+            let local = &self.nodes[channel.node.0].local;
+            self.rest_poses
+                .entry(channel.node)
+                .or_insert_with(|| Pose::of(local));
+        }
+        self.animations.push(animation);
+        Ok(())
+    }
+
+    /// Gives the nodes that the file describes by parts those parts, which a matrix does not always give back.
+    pub(super) fn set_rest_pose(&mut self, node: NodeId, pose: Pose) {
+        if let Some(rest) = self.rest_poses.get_mut(&node) {
+            *rest = pose;
+        }
+    }
+
+    /// Counts the changes that moving, or adding, these nodes makes.
+    fn count_moved(&mut self, moved: &[NodeId]) {
+        let any = |test: &dyn Fn(&Node, &[Instance]) -> bool| {
+            let changed = moved.iter().any(|id| {
+                test(
+                    &self.nodes[id.0],
+                    &self.instances[self.placements[id.0].instances.clone()],
+                )
+            });
+            u64::from(changed)
+        };
+        let geometry = any(&|_, instances| !instances.is_empty());
+        let lights = any(&|node, instances| {
+            node.light.is_some() || instances.iter().any(|it| self.material_of(it).emits())
+        });
+        let camera = any(&|node, _| node.camera.is_some());
+        self.revisions.geometry += geometry;
+        self.revisions.lights += lights;
+        self.revisions.camera += camera;
+        if geometry != 0 {
+            self.bounds = OnceLock::new();
+        }
+    }
+
+    fn check_material(&self, material: &Material) -> Result<(), SceneError> {
+        for texture in material.textures() {
+            self.check("texture", texture.texture.0, self.textures.len())?;
+        }
+        material.fault().map_or(Ok(()), |fault| {
+            Err(self.invalid("material", &material.name, fault))
+        })
+    }
+
+    fn check_light(&self, light: &Light) -> Result<(), SceneError> {
+        light.fault().map_or(Ok(()), |fault| {
+            Err(self.invalid("light", &light.name, fault))
+        })
+    }
+
+    fn compose(&self, node: &Node) -> Result<DAffine3, SceneError> {
+        let parent = node
+            .parent
+            .map_or(DAffine3::IDENTITY, |parent| self.placements[parent.0].world);
+        let world = parent * node.local;
+        match world.is_finite() && node.local.is_finite() {
+            true => Ok(world),
+            false => Err(self.invalid(
+                "node",
+                &node.name,
+                "its transform in the world is not finite".into(),
+            )),
+        }
+    }
+
+    fn check(&self, kind: &'static str, index: usize, count: usize) -> Result<(), SceneError> {
+        if index < count {
+            Ok(())
+        } else {
+            Err(SceneError::UnknownId {
+                scene: self.name.clone(),
+                kind,
+                index,
+                count,
+            })
+        }
+    }
+
+    fn invalid(&self, kind: &str, name: &str, fault: String) -> SceneError {
+        SceneError::InvalidObject {
+            scene: self.name.clone(),
+            object: format!("the {kind} {name:?}"),
+            fault,
+        }
+    }
+}
