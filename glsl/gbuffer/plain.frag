@@ -1,0 +1,27 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "geometry/normals.glsl"
+#include "gbuffer/targets.glsl"
+
+// One fragment of a primitive without textures: its normals, and its scattering lobes from the material's factors
+// (glTF 2.0 appendix B, see lib/brdf.glsl).
+
+layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
+
+layout(location = 0) in vec3 vertex_normal;
+layout(location = 1) in vec4 vertex_color;
+layout(location = 2) flat in uint instance_index;
+
+void main() {
+    Instance instance = instances[instance_index];
+    Material material = materials[instance.material];
+    MaterialPoint point = material_factors(material, vertex_color);
+    Lobes lobes = lobes_of_material(material, point);
+
+    Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
+    bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);
+
+    surface = pack_surface(towards_viewer(normals.vertex, normals), normals.geometric, lobes);
+    specular = pack_specular(lobes);
+    emission = vec4(emitted_radiance(material, point, front), 1.0);
+}

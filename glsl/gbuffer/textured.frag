@@ -1,0 +1,54 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "geometry/material_textures.glsl"
+#include "geometry/normals.glsl"
+#include "gbuffer/targets.glsl"
+
+// One fragment of a textured primitive: its normals with the normal map's on top, and its scattering lobes from the material's factors
+// times its textures (glTF 2.0 appendix B, see lib/brdf.glsl).
+
+layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
+
+// 1: a fragment whose alpha is below the material's cutoff is a hole.
+layout(constant_id = 2) const uint ALPHA_MASK = 0u;
+
+layout(location = 0) in vec3 vertex_normal;
+layout(location = 1) in vec4 vertex_color;
+layout(location = 2) flat in uint instance_index;
+layout(location = 3) in vec4 vertex_tangent;
+layout(location = 4) in vec4 texcoords;
+
+// The normal map's vector n' = t.x·T + t.y·B + t.z·N with B = w·(N×T) (glTF 2.0; MikkTSpace). A mirroring transform turns the
+// cross product round, which the tangent's sign makes good. Without tangents there is no frame to read the map in.
+vec3 mapped_normal(Instance instance, Material material, Normals normals) {
+    if (!has_texture(material, MATERIAL_NORMAL_TEXTURE) || (instance.flags & INSTANCE_HAS_TANGENTS) == 0u) {
+        return normals.vertex;
+    }
+    vec3 texel = sample_texture(normal_texture, material_textures[instance.material].normal, texcoords).xyz * 2.0 - 1.0;
+    texel.xy *= material.normal_scale;
+    float mirror = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
+    vec3 tangent = normalize_or(transform_direction(instance, vertex_tangent.xyz), vec3(0.0));
+    vec3 bitangent = cross(normals.vertex, tangent) * (vertex_tangent.w * mirror);
+    return normalize_or(texel.x * tangent + texel.y * bitangent + texel.z * normals.vertex, normals.vertex);
+}
+
+void main() {
+    Instance instance = instances[instance_index];
+    Material material = materials[instance.material];
+    MaterialPoint point = material_factors(material, vertex_color);
+    apply_base_color_texture(point, material, instance.material, texcoords);
+    if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {
+        discard;
+    }
+    apply_lobe_textures(point, material, instance.material, texcoords);
+    apply_emissive_texture(point, material, instance.material, texcoords);
+    Lobes lobes = lobes_of_material(material, point);
+
+    Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
+    vec3 shading_normal = towards_viewer(mapped_normal(instance, material, normals), normals);
+    bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);
+
+    surface = pack_surface(shading_normal, normals.geometric, lobes);
+    specular = pack_specular(lobes);
+    emission = vec4(emitted_radiance(material, point, front), 1.0);
+}

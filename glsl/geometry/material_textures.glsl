@@ -1,0 +1,60 @@
+// Set 1: the textures of a material, each a layer of the array bound for it. Programs that read but some of them still use
+// this whole set, so that one descriptor set per material fits all.
+#ifndef GEOMETRY_MATERIAL_TEXTURES
+#define GEOMETRY_MATERIAL_TEXTURES
+
+#include "lib/brdf.glsl"
+
+layout(set = 0, binding = 4) readonly buffer MaterialTexturesBlock { MaterialTextures material_textures[]; };
+
+layout(set = 1, binding = 0) uniform sampler2DArray base_color_texture;
+layout(set = 1, binding = 1) uniform sampler2DArray metallic_roughness_texture;
+layout(set = 1, binding = 2) uniform sampler2DArray normal_texture;
+layout(set = 1, binding = 3) uniform sampler2DArray emissive_texture;
+layout(set = 1, binding = 4) uniform sampler2DArray specular_texture;
+layout(set = 1, binding = 5) uniform sampler2DArray specular_color_texture;
+layout(set = 1, binding = 6) uniform sampler2DArray transmission_texture;
+
+// The bits of the texture kinds that any material drawn with this pipeline has: the kernel holds code for no others.
+layout(constant_id = 1) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
+
+bool has_texture(Material material, uint kind) {
+    return (material.flags & TEXTURES & kind) != 0u;
+}
+
+vec4 sample_texture(sampler2DArray array, TextureUse use, vec4 texcoords) {
+    vec3 uv = vec3(use.texcoord == 0u ? texcoords.xy : texcoords.zw, 1.0);
+    return texture(array, vec3(dot(use.u_row, uv), dot(use.v_row, uv), float(use.layer)));
+}
+
+// glTF 2.0: which channel of which texture scales which factor. `texcoords`: set 0 in xy, set 1 in zw.
+void apply_base_color_texture(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+    if (has_texture(material, MATERIAL_BASE_COLOR_TEXTURE)) {
+        point.base_color *= sample_texture(base_color_texture, material_textures[index].base_color, texcoords);
+    }
+}
+
+void apply_lobe_textures(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+    if (has_texture(material, MATERIAL_METALLIC_ROUGHNESS_TEXTURE)) {
+        vec4 texel = sample_texture(metallic_roughness_texture, material_textures[index].metallic_roughness, texcoords);
+        point.roughness *= texel.g;
+        point.metallic *= texel.b;
+    }
+    if (has_texture(material, MATERIAL_SPECULAR_TEXTURE)) {
+        point.specular *= sample_texture(specular_texture, material_textures[index].specular, texcoords).a;
+    }
+    if (has_texture(material, MATERIAL_SPECULAR_COLOR_TEXTURE)) {
+        point.specular_color *= sample_texture(specular_color_texture, material_textures[index].specular_color, texcoords).rgb;
+    }
+    if (has_texture(material, MATERIAL_TRANSMISSION_TEXTURE)) {
+        point.transmission *= sample_texture(transmission_texture, material_textures[index].transmission, texcoords).r;
+    }
+}
+
+void apply_emissive_texture(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+    if (has_texture(material, MATERIAL_EMISSIVE_TEXTURE)) {
+        point.emissive *= sample_texture(emissive_texture, material_textures[index].emissive, texcoords).rgb;
+    }
+}
+
+#endif

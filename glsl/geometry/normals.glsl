@@ -1,0 +1,58 @@
+// The normals of a fragment.
+#ifndef GEOMETRY_NORMALS
+#define GEOMETRY_NORMALS
+
+#include "geometry/instances.glsl"
+#include "lib/vectors.glsl"
+
+layout(set = 0, binding = 2) uniform usamplerBuffer indices;   // r32ui: the scene's index buffer
+layout(set = 0, binding = 3) uniform samplerBuffer positions;  // r32f: the scene's vertex positions, three texels each
+
+// 1: the triangle's own normal, from its three vertices. 0: the interpolated vertex normal stands for it; only for scenes whose
+// primitives all have normals that agree with their winding.
+layout(constant_id = 0) const uint FACE_NORMALS = 1u;
+
+vec3 vertex_position(uint vertex) {
+    int first = 3 * int(vertex);
+    return vec3(
+        texelFetch(positions, first).x, texelFetch(positions, first + 1).x, texelFetch(positions, first + 2).x);
+}
+
+// The normal of the triangle, exact however small it is on the screen, where screen-space derivatives of a position are noise.
+vec3 face_normal(Instance instance, uint primitive) {
+    int first = int(instance.first_index + 3u * primitive);
+    uvec3 corners = uvec3(texelFetch(indices, first).x, texelFetch(indices, first + 1).x, texelFetch(indices, first + 2).x)
+                    + uint(instance.vertex_offset);
+    vec3 origin = vertex_position(corners.x);
+    vec3 normal = cross(vertex_position(corners.y) - origin, vertex_position(corners.z) - origin);
+    return transform_normal(instance, normal);
+}
+
+struct Normals {
+    vec3 vertex;     // interpolated; sides with the surface's front
+    vec3 geometric;  // sides with the viewer
+};
+
+// The cofactor transform makes normals follow the winding on the screen, so a front-facing triangle's points to the viewer.
+Normals fragment_normals(Instance instance, vec3 vertex_normal, uint primitive, bool front_facing) {
+    vec3 interpolated = transform_normal(instance, vertex_normal);
+    vec3 face = interpolated;
+    if (FACE_NORMALS != 0u) {
+        face = face_normal(instance, primitive);
+        if ((instance.flags & INSTANCE_FLAT_NORMALS) != 0u) {
+            interpolated = face;
+        }
+    }
+    float viewer_side = front_facing ? 1.0 : -1.0;
+    float outside = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
+    vec3 geometric = viewer_side * normalize_or(face, vec3(0.0, 0.0, 1.0));
+    return Normals(outside * normalize_or(interpolated, geometric), geometric);
+}
+
+// A shading normal on the viewer's side of the surface. The triangle decides which side that is: an interpolated normal that
+// leans away from the viewer at a silhouette stays as it is, since its mirror image would be lit from the wrong side.
+vec3 towards_viewer(vec3 shading_normal, Normals normals) {
+    return dot(normals.vertex, normals.geometric) < 0.0 ? -shading_normal : shading_normal;
+}
+
+#endif

@@ -1,0 +1,148 @@
+// Lights, and the views from them (reflective shadow maps).
+//
+// All views of all lights share one atlas of squares and half squares. A view maps an atlas texel to a tangent coordinate,
+// tangent = tangent_origin + (texel centre − rect_origin)·tangent_step, and that to a ray: in the plane at distance 1 before
+// a perspective view, in metres across an orthographic one. Rays and depths give positions without an inverse matrix.
+#ifndef LIB_LIGHTS
+#define LIB_LIGHTS
+
+#include "lib/vectors.glsl"
+
+const uint LIGHT_POINT = 0u;
+const uint LIGHT_SPOT = 1u;
+const uint LIGHT_DIRECTIONAL = 2u;
+const uint LIGHT_EMITTER = 3u;  // a patch of an emissive surface: a one-sided cosine emitter
+
+struct Light {
+    vec3 position_rs;
+    uint kind;
+    vec3 direction;      // unit: where a directional light travels, a spot points, an emitter faces
+    uint first_view;
+    vec3 intensity;      // W/sr (point, spot); W/m² across the beam (directional); W/sr along the normal = power/π (emitter)
+    float area_over_pi;  // emitter: its area/π, m²; else 0
+    float spot_scale;    // glTF: clamp(cosθ·scale + offset, 0, 1)²
+    float spot_offset;
+    float range;         // glTF; metres; 0: unlimited
+    uint view_count;     // 6 point, 1 spot and directional, 5 emitter; 0: the light casts no shadow
+};
+
+struct LightView {
+    mat4 view_projection;   // render space to the clip space of the view's rectangle
+    vec3 origin_rs;
+    float near;             // metres along `forward`
+    vec3 right;             // unit
+    float depth_range;      // orthographic: far − near; perspective, which is infinite: 0
+    vec3 down;              // unit
+    float tangent_step;     // between texels: tangent units (perspective) or metres (orthographic)
+    vec3 forward;           // unit
+    float flux_scale;       // W for 1.0 in `light_flux`
+    vec2 tangent_origin;    // of the rectangle's upper left corner
+    vec2 lit_low;           // texels with their centre outside [lit_low, lit_high), the guard band, carry no flux:
+    vec2 lit_high;          // another view of the light does, or nobody
+    ivec2 rect_origin;      // texels in the atlas
+    ivec2 rect_size;
+    uint light;
+};
+
+// The atlas cut into squares of 16x16 texels, listed view by view, in Morton order inside a view.
+struct LightTile {
+    ivec2 origin;  // texels in the atlas
+    uint view;
+};
+
+// ---- emission
+
+// glTF 2.0, KHR_lights_punctual: angular falloff between the inner and the outer cone.
+float spot_attenuation(float cosine, float scale, float offset) {
+    float attenuation = clamp(cosine * scale + offset, 0.0, 1.0);
+    return attenuation * attenuation;
+}
+
+// KHR_lights_punctual: the window that takes a light with a range to zero at that range.
+float range_window(float distance, float range) {
+    float ratio = range > 0.0 ? distance / range : 0.0;
+    float squared = ratio * ratio;
+    return clamp(1.0 - squared * squared, 0.0, 1.0);
+}
+
+// I(ω) in W/sr towards the unit vector ω away from the light; for a directional light the irradiance across its beam in W/m².
+vec3 radiant_intensity(Light light, vec3 away) {
+    float cosine = dot(light.direction, away);
+    float falloff = light.kind == LIGHT_SPOT ? spot_attenuation(cosine, light.spot_scale, light.spot_offset)
+                  : light.kind == LIGHT_EMITTER ? max(cosine, 0.0) : 1.0;
+    return light.intensity * falloff;
+}
+
+struct Illumination {
+    vec3 to_light;    // unit
+    vec3 irradiance;  // W/m² across the beam, unshadowed: the receiver's cosine is still to come
+};
+
+// E⊥ = I(ω)·window(d)/d². An emitter is a disc of area A, d² + A/π (see lib/vpl.glsl): finite at any distance.
+Illumination illuminate(Light light, vec3 position_rs) {
+    if (light.kind == LIGHT_DIRECTIONAL) {
+        return Illumination(-light.direction, light.intensity);
+    }
+    vec3 difference = light.position_rs - position_rs;
+    float distance = length(difference);
+    vec3 to_light = difference / max(distance, 1e-18);
+    vec3 intensity = radiant_intensity(light, -to_light);
+    return Illumination(
+        to_light, intensity * (range_window(distance, light.range) / max(distance * distance + light.area_over_pi, 1e-18)));
+}
+
+// ---- views
+
+bool is_orthographic(LightView view) {
+    return view.depth_range > 0.0;
+}
+
+// `texel`: atlas coordinates with texel centres at halves, as gl_FragCoord has them.
+vec2 tangent_of_texel(LightView view, vec2 texel) {
+    return view.tangent_origin + (texel - vec2(view.rect_origin)) * view.tangent_step;
+}
+
+// From the view through a tangent coordinate: of length 1 along `forward` when perspective, the unit `forward` when orthographic.
+vec3 ray_of_tangent(LightView view, vec2 tangent) {
+    return is_orthographic(view) ? view.forward : view.forward + tangent.x * view.right + tangent.y * view.down;
+}
+
+// Metres along `forward`, for a depth above 0.
+float linear_depth(LightView view, float depth) {
+    return is_orthographic(view) ? view.near + (1.0 - depth) * view.depth_range : view.near / depth;
+}
+
+vec3 position_of_texel(LightView view, vec2 tangent, float depth) {
+    vec3 position = view.origin_rs + ray_of_tangent(view, tangent) * linear_depth(view, depth);
+    return is_orthographic(view) ? position + tangent.x * view.right + tangent.y * view.down : position;
+}
+
+// The surface, in m², that one texel sees: (z·step)²/|n·ray| with the ray of ray_of_tangent(), which is d²·Δω/cosθ
+// (perspective) and step²/cosθ (orthographic). Grazing texels count as if seen at a cosine of 0.1.
+float area_of_texel(LightView view, vec2 tangent, float depth, vec3 normal) {
+    vec3 ray = ray_of_tangent(view, tangent);
+    float width = view.tangent_step * (is_orthographic(view) ? 1.0 : linear_depth(view, depth));
+    return width * width / max(abs(dot(normal, ray)), 0.1 * length(ray));
+}
+
+// 0 … 5 for +x, −x, +y, −y, +z, −z: the largest component.
+uint major_axis_face(vec3 v) {
+    vec3 size = abs(v);
+    uint axis = size.x >= size.y && size.x >= size.z ? 0u : size.y >= size.z ? 1u : 2u;
+    return 2u * axis + (v[axis] < 0.0 ? 1u : 0u);
+}
+
+// Which of the light's views sees the direction `away` from the light. Point lights: the axes of render space, in the order of
+// major_axis_face(). Emitters: `first` looks along the normal, then come its right, left, down and up.
+uint view_towards(Light light, LightView first, vec3 away) {
+    if (light.kind == LIGHT_POINT) {
+        return light.first_view + major_axis_face(away);
+    }
+    if (light.kind == LIGHT_EMITTER) {
+        uint face = major_axis_face(vec3(dot(away, first.right), dot(away, first.down), dot(away, first.forward)));
+        return light.first_view + (face < 4u ? face + 1u : 0u);
+    }
+    return light.first_view;
+}
+
+#endif

@@ -1,0 +1,100 @@
+// What the host knows of a scene: camera, instances, materials.
+//
+// Spaces, by suffix: `_rs` render space, the world's axes in metres minus the scene's fixed origin; no suffix on a vector of an
+// instance: its object space. Depth is reversed: 1 at the near plane, 0 at infinity (perspective) or at the far
+// plane (orthographic), and 0 where there is no surface.
+#ifndef LIB_SCENE
+#define LIB_SCENE
+
+struct Camera {
+    mat4 view_projection;  // render space to clip space, y down
+    vec3 position_rs;
+    float near;            // metres along `forward`
+    vec3 forward;          // unit
+    float depth_range;     // orthographic: far − near; perspective, which is infinite: 0
+    vec3 right_scaled;     // from the image's centre to its right edge: at distance 1 (perspective) or in metres (orthographic)
+    vec3 down_scaled;      // likewise to its lower edge
+};
+
+// The point of render space behind a pixel. It takes the depth's float precision along the ray and no matrix inverse.
+vec3 position_of_pixel(Camera camera, vec2 ndc, float depth) {
+    vec3 across = ndc.x * camera.right_scaled + ndc.y * camera.down_scaled;
+    return camera.depth_range > 0.0
+        ? camera.position_rs + across + camera.forward * (camera.near + (1.0 - depth) * camera.depth_range)
+        : camera.position_rs + (camera.forward + across) * (camera.near / depth);
+}
+
+vec3 direction_to_eye(Camera camera, vec3 position_rs) {
+    return camera.depth_range > 0.0 ? -camera.forward : normalize(camera.position_rs - position_rs);
+}
+
+const uint INSTANCE_FLAT_NORMALS = 1u;  // the primitive has no vertex normals
+const uint INSTANCE_FLIPPED = 2u;       // the transform mirrors
+const uint INSTANCE_HAS_COLORS = 4u;
+const uint INSTANCE_HAS_TANGENTS = 8u;
+
+struct Instance {
+    mat3x4 object_to_render;  // its columns are the affine transform's rows: vec4(p, 1) * object_to_render
+    vec3 cofactor_x;          // the columns of the linear part's cofactor matrix, (b×c, c×a, a×b) of its columns a, b, c,
+    vec3 cofactor_y;          // times any positive factor. It maps the cross product of two edges to that of the mapped edges:
+    vec3 cofactor_z;          // normals stay perpendicular under any scale and follow the winding under a mirror.
+    uint material;
+    uint flags;
+    uint first_index;         // of the primitive in the scene's index buffer
+    int vertex_offset;        // added to every index
+};
+
+vec3 transform_normal(Instance instance, vec3 normal) {
+    return normal.x * instance.cofactor_x + normal.y * instance.cofactor_y + normal.z * instance.cofactor_z;
+}
+
+vec3 transform_direction(Instance instance, vec3 direction) {
+    return vec4(direction, 0.0) * instance.object_to_render;
+}
+
+const uint MATERIAL_DOUBLE_SIDED = 1u;
+const uint MATERIAL_UNLIT = 2u;
+const uint MATERIAL_BASE_COLOR_TEXTURE = 4u;
+const uint MATERIAL_METALLIC_ROUGHNESS_TEXTURE = 8u;
+const uint MATERIAL_NORMAL_TEXTURE = 16u;
+const uint MATERIAL_EMISSIVE_TEXTURE = 32u;
+const uint MATERIAL_SPECULAR_TEXTURE = 64u;
+const uint MATERIAL_SPECULAR_COLOR_TEXTURE = 128u;
+const uint MATERIAL_TRANSMISSION_TEXTURE = 256u;
+const uint MATERIAL_ALL_TEXTURES = 0x1FCu;
+
+// glTF 2.0 metallic-roughness with KHR_materials_{ior, specular, transmission, emissive_strength, unlit}: the factors.
+struct Material {
+    vec4 base_color;
+    vec3 emissive;          // radiance, W/(m²·sr): factor times strength
+    float metallic;
+    vec3 specular_color;
+    float specular;
+    float roughness;        // perceptual; α is its square
+    float ior;
+    float transmission;
+    float normal_scale;
+    float alpha_cutoff;     // below 0: opaque
+    uint flags;
+};
+
+// How a material reads one texture: uv' = (u_row·(uv,1), v_row·(uv,1)) in `layer` of the array that is bound for it.
+struct TextureUse {
+    vec3 u_row;
+    vec3 v_row;
+    uint layer;
+    uint texcoord;  // 0 or 1
+};
+
+// One a material, in the materials' order; only programs that read textures bind it.
+struct MaterialTextures {
+    TextureUse base_color;
+    TextureUse metallic_roughness;
+    TextureUse normal;
+    TextureUse emissive;
+    TextureUse specular;
+    TextureUse specular_color;
+    TextureUse transmission;
+};
+
+#endif

@@ -1,0 +1,66 @@
+// Filtered shadow lookup in the atlas of light views.
+#ifndef LIB_SHADOW
+#define LIB_SHADOW
+
+#include "lib/lights.glsl"
+
+struct ShadowFilter {
+    float normal_offset;  // in widths of a shadow texel at the receiver
+    int radius;           // taps: (2·radius + 1)²
+};
+
+// The share of the light that arrives, 0 … 1: percentage-closer filtering (Reeves et al. 1987) with (2r+1)² bilinear taps one texel
+// apart. Neighbouring taps share texels, so their sum is one comparison for each of (2r+2)² texels, weighted 1−f, 1, …, 1, f in x and y.
+//
+// Every texel is compared with the depth that the receiver's own plane has at that texel. Reversed depth is linear over
+// the plane of the view for any planar receiver: with v the receiver seen from the view and n its normal,
+//   perspective   depth(t) = near·n·(forward + t.x·right + t.y·down)/(n·v)    ∂depth/∂t = near·(n·right, n·down)/(n·v)
+//   orthographic  depth(t) = 1 − (z(t) − near)/range                          ∂depth/∂t = (n·right, n·down)/(n·forward)/range
+// A flat receiver is then free of acne at every slope without a bias, and nothing detaches from its shadow.
+// What remains, rounding and dents between facets, is met by moving the receiver along its normal by a share of the texel
+// that grows with the slope (Holbert 2011). Slopes are capped at a cosine of 0.02.
+float light_visibility(sampler2D light_depth, LightView view, vec3 position_rs, vec3 normal, ShadowFilter shadow_filter) {
+    vec3 receiver = position_rs - view.origin_rs;
+    bool orthographic = is_orthographic(view);
+    vec3 away = orthographic ? view.forward : normalize_or(receiver, view.forward);
+    float cosine = dot(normal, away);
+    float texel_width = view.tangent_step * (orthographic ? 1.0 : dot(receiver, view.forward));
+    float slope = max(sqrt(max(1.0 - cosine * cosine, 0.0)), 0.1);
+    receiver += normal * (shadow_filter.normal_offset * texel_width * slope);
+
+    vec2 tangent = vec2(dot(receiver, view.right), dot(receiver, view.down));
+    vec2 gradient = vec2(dot(normal, view.right), dot(normal, view.down)) * view.tangent_step;
+    float z = dot(receiver, view.forward);
+    float depth;
+    if (orthographic) {
+        depth = 1.0 - (z - view.near) / view.depth_range;
+        gradient /= min(dot(normal, view.forward), -0.02) * view.depth_range;
+    } else {
+        // Nothing nearer than the near plane is in the map, so nothing there is in shadow.
+        z = max(z, view.near);
+        depth = view.near / z;
+        tangent /= z;
+        gradient *= view.near / min(dot(normal, receiver), -0.02 * length(receiver));
+    }
+
+    vec2 texel = (tangent - view.tangent_origin) / view.tangent_step - 0.5;
+    vec2 whole = floor(texel);
+    vec2 fraction = texel - whole;
+    ivec2 base = view.rect_origin + ivec2(clamp(whole, vec2(-1.0), vec2(view.rect_size)));
+    ivec2 last = view.rect_origin + view.rect_size - 1;
+    int radius = shadow_filter.radius;
+    float sum = 0.0;
+    for (int y = -radius; y <= radius + 1; ++y) {
+        float weight_y = y == -radius ? 1.0 - fraction.y : y == radius + 1 ? fraction.y : 1.0;
+        for (int x = -radius; x <= radius + 1; ++x) {
+            float weight_x = x == -radius ? 1.0 - fraction.x : x == radius + 1 ? fraction.x : 1.0;
+            float occluder = texelFetch(light_depth, clamp(base + ivec2(x, y), view.rect_origin, last), 0).x;
+            float plane = depth + dot(gradient, vec2(x, y) - fraction);
+            sum += occluder <= max(plane, 0.0) ? weight_x * weight_y : 0.0;
+        }
+    }
+    float side = float(2 * radius + 1);
+    return sum / (side * side);
+}
+
+#endif

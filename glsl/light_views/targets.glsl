@@ -1,0 +1,44 @@
+// What a texel of a reflective light view holds (Dachsbacher & Stamminger 2005): the surface that the light sees there and the flux
+// that its diffuse lobe sends back,
+//
+//   Φ = I(ω)·window(d)·Δω·ρ     perspective: I in W/sr, Δω the texel's exact solid angle (lib/solid_angle.glsl)
+//   Φ = E⊥·step²·ρ              orthographic: E⊥ in W/m² across the beam, step² the texel's area
+//
+// [W], ρ = indirect_diffuse_albedo(). No cosine: the flux through a texel lands whole on whatever is there. Summed over a light's views the
+// texels in the lit rectangle tile all directions once, so the fluxes add up to what the light sends, times ρ.
+
+#include "lib/brdf.glsl"
+#include "lib/lights.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/solid_angle.glsl"
+
+layout(set = 0, binding = 6) readonly buffer Lights { Light lights[]; };
+
+layout(location = 0) out uint light_normal;  // r32ui: the triangle's normal on the light's side, pack_direction()
+layout(location = 1) out vec4 light_flux;    // rgba16f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
+
+const float LARGEST_HALF = 65504.0;
+
+// W before any surface reflects it. `texel` and `depth` as gl_FragCoord has them.
+vec3 incident_flux(Light light, LightView view, vec2 texel, float depth) {
+    vec2 tangent = tangent_of_texel(view, texel);
+    if (any(lessThan(tangent, view.lit_low)) || any(greaterThanEqual(tangent, view.lit_high))) {
+        return vec3(0.0);
+    }
+    if (is_orthographic(view)) {
+        return light.intensity * (view.tangent_step * view.tangent_step);
+    }
+    vec3 ray = ray_of_tangent(view, tangent);
+    float stretch = length(ray);
+    float window = range_window(stretch * view.near / depth, light.range);
+    return radiant_intensity(light, ray / stretch) * (window * solid_angle_of_texel(tangent, view.tangent_step));
+}
+
+vec4 reflected_flux(Light light, LightView view, vec4 fragment, vec3 normal, Lobes lobes, float transmission) {
+    vec3 incident = incident_flux(light, view, fragment.xy, fragment.z);
+    vec3 reflected = incident * indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90);
+    vec3 ray = ray_of_tangent(view, tangent_of_texel(view, fragment.xy));
+    float reflectance = max3(schlick_fresnel(lobes.f0, lobes.f90, abs(dot(normal, normalize(ray)))));
+    float mask = reflectance + (1.0 - reflectance) * transmission;
+    return vec4(min(reflected / view.flux_scale, vec3(LARGEST_HALF)), max3(incident) > 0.0 ? clamp(mask, 0.0, 1.0) : 0.0);
+}

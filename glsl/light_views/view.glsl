@@ -1,0 +1,13 @@
+// Set 0 and push constant of the programs that draw the scene into one light view's rectangle of the atlas.
+
+#include "geometry/instances.glsl"
+#include "lib/lights.glsl"
+
+layout(set = 0, binding = 5) readonly buffer Views { LightView views[]; };
+
+layout(push_constant, scalar) uniform Push { uint view_index; } push;
+
+vec4 clip_position(vec3 position, uint instance) {
+    vec3 position_rs = vec4(position, 1.0) * instances[instance].object_to_render;
+    return views[push.view_index].view_projection * vec4(position_rs, 1.0);
+}

@@ -1,0 +1,29 @@
+// What the texels of a light tile add to the distribution that virtual point lights are drawn from.
+
+#include "lib/color.glsl"
+#include "lib/lights.glsl"
+#include "lib/morton.glsl"
+#include "lib/octahedral.glsl"
+
+const uint TILE_TEXELS = 256u;
+
+layout(set = 0, binding = 0) readonly buffer Tiles { LightTile tiles[]; };
+layout(set = 0, binding = 1) readonly buffer Views { LightView views[]; };
+layout(set = 0, binding = 2) uniform sampler2D light_depth;
+layout(set = 0, binding = 3) uniform usampler2D light_normal;
+layout(set = 0, binding = 4) uniform sampler2D light_flux;
+
+ivec2 texel_of_tile(LightTile tile, uint index) {
+    return tile.origin + morton_decode(index);
+}
+
+// Reflected flux [W] and lit surface [m²] of one texel; a texel that reflects nothing has no surface either.
+vec4 flux_and_area(LightView view, ivec2 texel) {
+    vec3 flux = texelFetch(light_flux, texel, 0).rgb * view.flux_scale;
+    float depth = texelFetch(light_depth, texel, 0).x;
+    if (luminance(flux) <= 0.0 || depth <= 0.0) {
+        return vec4(0.0);
+    }
+    vec3 normal = unpack_direction(texelFetch(light_normal, texel, 0).x);
+    return vec4(flux, area_of_texel(view, tangent_of_texel(view, vec2(texel) + 0.5), depth, normal));
+}
