@@ -8,25 +8,25 @@ use std::path::PathBuf;
 use crate::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
 
 /// A stage of a program, and where its SPIR-V lies.
-pub struct CompiledStage {
-    pub kind: &'static str,
-    pub spirv_path: PathBuf,
-    pub stage: Stage,
+pub(crate) struct CompiledStage {
+    pub(crate) kind: &'static str,
+    pub(crate) spirv_path: PathBuf,
+    pub(crate) stage: Stage,
 }
 
 /// All stages of one program, merged.
-pub struct Program {
-    pub piece: String,
-    pub pass: String,
-    pub summary: String,
-    pub stages: Vec<CompiledStage>,
+pub(crate) struct Program {
+    pub(crate) piece: String,
+    pub(crate) pass: String,
+    pub(crate) summary: String,
+    pub(crate) stages: Vec<CompiledStage>,
 }
 
 /// The source of the generated module.
 ///
 /// # Errors
 /// Says which program contradicts itself or another one.
-pub fn generate(programs: &[Program]) -> Result<String, String> {
+pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
     let mut structs: BTreeMap<String, Struct> = BTreeMap::new();
     for program in programs {
         for stage in &program.stages {

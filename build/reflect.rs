@@ -7,7 +7,7 @@ use spirv::{Decoration, Dim, ExecutionMode, Op, StorageClass};
 
 /// A scalar, vector, matrix, array or struct in memory shared with the host.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Type {
+pub(crate) enum Type {
     Float,
     Int,
     Uint,
@@ -17,21 +17,21 @@ pub enum Type {
 
 /// A struct as the shader lays it out.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Struct {
-    pub name: String,
-    pub fields: Vec<Field>,
+pub(crate) struct Struct {
+    pub(crate) name: String,
+    pub(crate) fields: Vec<Field>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
-    pub name: String,
-    pub offset: u32,
-    pub ty: Type,
+pub(crate) struct Field {
+    pub(crate) name: String,
+    pub(crate) offset: u32,
+    pub(crate) ty: Type,
 }
 
 /// How many texels an image binding spans, as its shader type says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImageDim {
+pub(crate) enum ImageDim {
     D2,
     D2Array,
     D3,
@@ -39,7 +39,7 @@ pub enum ImageDim {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum BindingKind {
+pub(crate) enum BindingKind {
     SampledImage(ImageDim),
     StorageImage { dim: ImageDim, reads: bool, writes: bool },
     TexelBuffer,
@@ -48,35 +48,35 @@ pub enum BindingKind {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Binding {
-    pub name: String,
-    pub set: u32,
-    pub binding: u32,
-    pub kind: BindingKind,
+pub(crate) struct Binding {
+    pub(crate) name: String,
+    pub(crate) set: u32,
+    pub(crate) binding: u32,
+    pub(crate) kind: BindingKind,
 }
 
 /// A specialisation constant with its default as raw bits.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Constant {
-    pub name: String,
-    pub id: u32,
-    pub ty: Type,
-    pub default: u32,
+pub(crate) struct Constant {
+    pub(crate) name: String,
+    pub(crate) id: u32,
+    pub(crate) ty: Type,
+    pub(crate) default: u32,
 }
 
 /// What one shader stage asks for.
 #[derive(Debug, Default)]
-pub struct Stage {
-    pub bindings: Vec<Binding>,
-    pub push: Option<Struct>,
-    pub constants: Vec<Constant>,
-    pub local_size: [u32; 3],
-    pub structs: BTreeMap<String, Struct>,
+pub(crate) struct Stage {
+    pub(crate) bindings: Vec<Binding>,
+    pub(crate) push: Option<Struct>,
+    pub(crate) constants: Vec<Constant>,
+    pub(crate) local_size: [u32; 3],
+    pub(crate) structs: BTreeMap<String, Struct>,
 }
 
 #[derive(Clone, Debug)]
 enum RawType {
-    Other,
+
     Int { signed: bool },
     Float,
     Vector { component: u32, count: u32 },
@@ -104,7 +104,7 @@ struct Module {
 }
 
 /// Reads one stage. Errors are sentences about the shader, without its file name.
-pub fn reflect(words: &[u32]) -> Result<Stage, String> {
+pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
     let module = parse(words)?;
     let mut stage = Stage { local_size: module.local_size, ..Stage::default() };
     if let Some(ids) = module.local_size_ids {
@@ -313,7 +313,7 @@ fn image_dim(dim: Dim, arrayed: bool) -> Result<ImageDim, String> {
 }
 
 /// Bytes that a value takes with scalar block layout.
-pub fn size_of(ty: &Type, structs: &BTreeMap<String, Struct>) -> u32 {
+pub(crate) fn size_of(ty: &Type, structs: &BTreeMap<String, Struct>) -> u32 {
     match ty {
         Type::Float | Type::Int | Type::Uint => 4,
         Type::Array { count, stride, .. } => count * stride,

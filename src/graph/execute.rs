@@ -9,7 +9,7 @@ use super::barriers::Need;
 use super::bindings::{Access, BufferUse, ImageUse};
 use super::demand::{Needs, Verdict, Version, decide};
 use super::pass::{ClearColor, DrawList, Draws, Pass, Targets, Work};
-use super::store::{MAX_COUNTERS, MAX_PASSES, Store};
+use super::store::{MAX_COUNTERS, MAX_PASSES};
 use super::{Body, Graph};
 use crate::renderer::{PassTiming, Timing};
 use crate::vulkan::program::{BindingKind, ImageDim};
@@ -147,14 +147,14 @@ impl Graph<'_> {
         Ok(())
     }
 
-    fn image(&self, id: usize) -> Arc<Image> {
+    fn memory_of_image(&self, id: usize) -> Arc<Image> {
         match &self.resources[id].body {
             Body::ExternalImage(image) => image.clone(),
             _ => self.store.images[&self.resources[id].name].image.clone(),
         }
     }
 
-    fn buffer(&self, id: usize) -> Arc<Buffer> {
+    fn memory_of_buffer(&self, id: usize) -> Arc<Buffer> {
         match &self.resources[id].body {
             Body::ExternalBuffer(buffer) => buffer.clone(),
             _ => self.store.buffers[&self.resources[id].name].buffer.clone(),
@@ -222,7 +222,7 @@ impl Graph<'_> {
             Access::Image { image, .. } => Some(*image),
             Access::Buffer { .. } => None,
         });
-        ids.map(|id| (id, self.image(id))).collect()
+        ids.map(|id| (id, self.memory_of_image(id))).collect()
     }
 
     /// All dependencies of a pass on what came before, as one batch.
@@ -262,10 +262,10 @@ impl Graph<'_> {
             Work::Skipped(_) => {}
             Work::ClearImage { image, mips, value } => {
                 for mip in mips.clone() {
-                    recorder.clear_image(&self.image(*image), mip, vk::ClearColorValue { float32: *value });
+                    recorder.clear_image(&self.memory_of_image(*image), mip, vk::ClearColorValue { float32: *value });
                 }
             }
-            Work::FillBuffer { buffer, word } => recorder.fill(&self.buffer(*buffer), 0, vk::WHOLE_SIZE, *word),
+            Work::FillBuffer { buffer, word } => recorder.fill(&self.memory_of_buffer(*buffer), 0, vk::WHOLE_SIZE, *word),
             Work::Dispatch(groups) => {
                 self.check_groups(pass, *groups)?;
                 if !groups.contains(&0) {
@@ -275,7 +275,7 @@ impl Graph<'_> {
             }
             Work::DispatchIndirect { buffer, offset } => {
                 self.bind(pass, None)?;
-                recorder.dispatch_indirect(&self.buffer(*buffer), *offset);
+                recorder.dispatch_indirect(&self.memory_of_buffer(*buffer), *offset);
             }
             Work::Draw(draws) => self.record_draws(pass, draws)?,
         }
@@ -315,7 +315,7 @@ impl Graph<'_> {
     fn descriptor(&self, access: &Access, kind: BindingKind) -> Result<Descriptor, VulkanError> {
         Ok(match access {
             Access::Image { image, mips, usage } => {
-                let image = self.image(*image);
+                let image = self.memory_of_image(*image);
                 let (BindingKind::SampledImage(dim) | BindingKind::StorageImage(dim)) = kind else { unreachable!("typed by the generated bindings") };
                 let aspect = image.info.aspect() & !vk::ImageAspectFlags::STENCIL;
                 let aspect = if aspect.is_empty() { image.info.aspect() } else { aspect };
@@ -329,8 +329,8 @@ impl Graph<'_> {
                     _ => Descriptor::Image { view, layout: vk::ImageLayout::GENERAL, sampler: vk::Sampler::null() },
                 }
             }
-            Access::Buffer { buffer, usage: BufferUse::Texels(format) } => Descriptor::Texels(self.buffer(*buffer).texels(*format)?),
-            Access::Buffer { buffer, .. } => Descriptor::Buffer(self.buffer(*buffer).raw),
+            Access::Buffer { buffer, usage: BufferUse::Texels(format) } => Descriptor::Texels(self.memory_of_buffer(*buffer).texels(*format)?),
+            Access::Buffer { buffer, .. } => Descriptor::Buffer(self.memory_of_buffer(*buffer).raw),
         })
     }
 
@@ -344,7 +344,7 @@ impl Graph<'_> {
         recorder.viewport([0.0, 0.0, width as f32, height as f32], [0, 0, width, height]);
         match draws {
             Draws::Vertices { vertices, instances } => recorder.draw(*vertices, *instances),
-            Draws::Indirect { buffer, offset, count } => recorder.draw_indirect(&self.buffer(*buffer), *offset, *count),
+            Draws::Indirect { buffer, offset, count } => recorder.draw_indirect(&self.memory_of_buffer(*buffer), *offset, *count),
             Draws::Meshes(list) => self.record_meshes(pipeline, list),
         }
         recorder.end_rendering();
@@ -374,7 +374,7 @@ impl Graph<'_> {
     fn attachments(&self, targets: &Targets) -> Result<Attachments, VulkanError> {
         let view = |access: &Access, aspect: vk::ImageAspectFlags| -> Result<(vk::ImageView, vk::Format, vk::ImageLayout), VulkanError> {
             let Access::Image { image, mips, usage } = access else { unreachable!("attachments are images") };
-            let image = self.image(*image);
+            let image = self.memory_of_image(*image);
             let what = SubresourceView { dim: ImageDim::D2, mips: mips.start..mips.start + 1, aspect, format: image.info.format };
             Ok((image.view(&what)?, image.info.format, layout_of(*usage)))
         };
@@ -418,7 +418,7 @@ impl Graph<'_> {
         let mut add = |name: &str, buffer: usize, offset: u64, invocations_of_group: Option<u64>| {
             let words = if invocations_of_group.is_some() { 3 } else { 1 };
             if slot + words <= MAX_COUNTERS {
-                recorder.copy(&self.buffer(buffer), offset, &self.store.counters, slot * 4, words * 4);
+                recorder.copy(&self.memory_of_buffer(buffer), offset, &self.store.counters, slot * 4, words * 4);
                 counters.push(PendingCounter { pass: index, name: name.to_owned(), invocations_of_group, slot });
                 slot += words;
             }

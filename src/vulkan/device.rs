@@ -68,7 +68,8 @@ impl Device {
             instance: instance.raw.clone(),
             device: raw.clone(),
             physical_device: physical,
-            debug_settings: gpu_allocator::AllocatorDebugSettings { log_memory_information: false, log_leaks_on_shutdown: false, ..Default::default() },
+            // Leaks are named by our own register, which also knows who is alive before shutdown.
+            debug_settings: { let mut settings = gpu_allocator::AllocatorDebugSettings::default(); settings.log_leaks_on_shutdown = false; settings },
             buffer_device_address: false,
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         };

@@ -58,7 +58,7 @@ pub(crate) struct Barriers<'a> {
 }
 
 /// An attachment of a raster pass.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct Attachment {
     pub(crate) view: vk::ImageView,
     pub(crate) layout: vk::ImageLayout,
@@ -361,6 +361,24 @@ impl Recorder {
         let regions = [copy_region(image, 0, 0, image.info.layers, offset)];
         // SAFETY: as above; the image is in the transfer layout; the buffer is large enough.
         unsafe { self.device.raw.cmd_copy_image_to_buffer(self.commands, image.raw, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, buffer.raw, &regions) };
+    }
+
+    /// Makes mip level `mip` from the one above it, averaging texels; sRGB texels are averaged as light.
+    pub(crate) fn halve_mip(&self, image: &Image, mip: u32) {
+        let layers = |mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            mip_level,
+            base_array_layer: 0,
+            layer_count: image.info.layers,
+        };
+        let corner = |mip: u32| {
+            let [width, height, _] = image.info.extent.map(|length| i32::try_from((length >> mip).max(1)).unwrap_or(1));
+            [vk::Offset3D::default(), vk::Offset3D { x: width, y: height, z: 1 }]
+        };
+        let regions = [vk::ImageBlit { src_subresource: layers(mip - 1), src_offsets: corner(mip - 1), dst_subresource: layers(mip), dst_offsets: corner(mip) }];
+        let (from, to) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        // SAFETY: the command buffer is recording; the levels are in the transfer layouts.
+        unsafe { self.device.raw.cmd_blit_image(self.commands, image.raw, from, image.raw, to, &regions, vk::Filter::LINEAR) };
     }
 
     /// Copies `buffer` at `offset` to one layer of one mip level.

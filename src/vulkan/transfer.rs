@@ -25,32 +25,35 @@ pub(crate) fn buffer_with(device: &Arc<Device>, name: &str, bytes: &[u8], usage:
     Ok(Arc::new(buffer))
 }
 
-/// A sampled image whose layers hold the mip chains given: `layers[layer][mip]` bytes.
-pub(crate) fn image_with(device: &Arc<Device>, name: &str, info: ImageInfo, layers: &[Vec<Vec<u8>>], flags: vk::ImageCreateFlags) -> Result<Arc<Image>, VulkanError> {
-    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-    let image = Image::new(device, name, info, usage, flags)?;
-    let relayout = |old_layout, new_layout| Barriers {
+/// A sampled image of 8-bit texels whose `layers` are given at full size; smaller mip levels are made from them.
+pub(crate) fn image_with(device: &Arc<Device>, name: &str, info: ImageInfo, layers: &[&[u8]]) -> Result<Arc<Image>, VulkanError> {
+    use vk::ImageLayout as Layout;
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
+    let image = Image::new(device, name, info, usage, vk::ImageCreateFlags::empty())?;
+    let relayout = |mips: std::ops::Range<u32>, old_layout, new_layout| Barriers {
         memory: None,
-        images: (0..info.mips).map(|mip| ImageBarrier { image: &image, mip, scope: Scope::FULL, old_layout, new_layout }).collect(),
+        images: mips.map(|mip| ImageBarrier { image: &image, mip, scope: Scope::FULL, old_layout, new_layout }).collect(),
     };
     let mut recorder = Recorder::new(device)?;
     // One layer at a time bounds the staging memory.
     for (number, layer) in (0..).zip(layers) {
-        let staging = staging(device, name, &layer.concat())?;
+        let staging = staging(device, name, layer)?;
         recorder.begin(0)?;
         if number == 0 {
-            recorder.barriers(&relayout(vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_DST_OPTIMAL));
+            recorder.barriers(&relayout(0..info.mips, Layout::UNDEFINED, Layout::TRANSFER_DST_OPTIMAL));
         }
-        let mut offset = 0;
-        for (mip, bytes) in (0..).zip(layer) {
-            recorder.write_image(&staging, offset, &image, mip, number);
-            offset += bytes.len() as u64;
-        }
-        if number as usize + 1 == layers.len() {
-            recorder.barriers(&relayout(vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL));
-        }
+        recorder.write_image(&staging, 0, &image, 0, number);
         recorder.finish()?;
     }
+    recorder.begin(0)?;
+    for mip in 1..info.mips {
+        recorder.barriers(&relayout(mip - 1..mip, Layout::TRANSFER_DST_OPTIMAL, Layout::TRANSFER_SRC_OPTIMAL));
+        recorder.halve_mip(&image, mip);
+    }
+    let last = info.mips - 1;
+    recorder.barriers(&relayout(0..last, Layout::TRANSFER_SRC_OPTIMAL, Layout::SHADER_READ_ONLY_OPTIMAL));
+    recorder.barriers(&relayout(last..info.mips, Layout::TRANSFER_DST_OPTIMAL, Layout::SHADER_READ_ONLY_OPTIMAL));
+    recorder.finish()?;
     drop(recorder);
     Ok(Arc::new(image))
 }
