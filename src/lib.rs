@@ -1,5 +1,7 @@
 //! irradia: a headless Vulkan engine for global illumination.
 
+pub mod bench;
+pub mod output;
 pub mod renderer;
 pub mod scene;
 
