@@ -1,0 +1,16 @@
+//! The bench: techniques side by side on one scene, every pass timed, told as JSON, tables, Markdown and CSV.
+//!
+//! ```text
+//! run ──▶ samples ──▶ report ──▶ rows ──▶ text · markdown · csv
+//!         (one technique's frames) (JSON)  (what a table says)
+//! ```
+
+pub mod report;
+pub mod rows;
+mod run;
+mod samples;
+pub mod statistics;
+pub mod tables;
+mod units;
+
+pub use run::{Finished, Options, Subject, run};

@@ -1,0 +1,253 @@
+//! The JSON of `irradia bench`, schema `irradia-bench/1`. Other programs read it: names stay what they are.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::statistics::Spread;
+use crate::renderer::{DeviceReport, Slot};
+
+/// The schema that [`Report`] writes.
+pub const SCHEMA: &str = "irradia-bench/1";
+
+/// All runs of one call of the bench.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The version of irradia.
+    pub irradia: String,
+    /// What it ran on.
+    pub device: Device,
+    /// The runs, scene by scene.
+    pub runs: Vec<Run>,
+    /// What could not be run.
+    pub failures: Vec<Failure>,
+}
+
+impl Report {
+    /// A report without runs yet.
+    pub fn new(device: &DeviceReport) -> Report {
+        Report {
+            schema: SCHEMA.to_owned(),
+            irradia: env!("CARGO_PKG_VERSION").to_owned(),
+            device: Device::from(device),
+            runs: Vec::new(),
+            failures: Vec::new(),
+        }
+    }
+}
+
+/// The device that a report's runs were made on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    /// As the driver calls it.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// The Vulkan version.
+    pub api: String,
+}
+
+impl From<&DeviceReport> for Device {
+    fn from(device: &DeviceReport) -> Device {
+        Device { name: device.name.clone(), kind: device.kind.clone(), driver: device.driver.clone(), api: device.api.clone() }
+    }
+}
+
+/// One technique on one scene. Times are in milliseconds; spreads are over the rounds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The scene's name.
+    pub scene: String,
+    /// The technique's name.
+    pub technique: String,
+    /// The method of every slot.
+    pub methods: BTreeMap<Slot, String>,
+    /// The preset's name.
+    pub preset: String,
+    /// The options of every piece, `{"lights": {…}, …}`.
+    pub settings: Map<String, Value>,
+    /// The camera's name.
+    pub camera: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Rounds measured.
+    pub frames: u32,
+    /// Frames rendered before them, after the first one.
+    pub warmup: u32,
+    /// GPU time of a whole frame made anew, its passes overlapping as the driver likes.
+    pub frame_ms: Spread,
+    /// GPU time of the same frame with full barriers between its passes. The passes below are parts of this one.
+    pub serialised_ms: Spread,
+    /// GPU time of a frame in which nothing changed since the one before.
+    pub unchanged_ms: Spread,
+    /// Host time of the very first frame.
+    pub first_frame_ms: f64,
+    /// Time spent creating pipelines, in all frames together.
+    pub pipeline_ms: f64,
+    /// What the first frame took on the host beyond the median frame made anew: compilation by the driver, at creation
+    /// of the pipelines or at their first use, and first allocations.
+    pub compile_ms: f64,
+    /// Host time of loading the scene.
+    pub load_ms: f64,
+    /// The passes in their order, the skipped ones included; those of the same name are one entry.
+    pub passes: Vec<Pass>,
+    /// The passes of one piece together.
+    pub pieces: Vec<Piece>,
+    /// Median over the rounds of the serialised frame less the sum of its passes.
+    pub unexplained_ms: f64,
+    /// Device memory held by the frame's pieces and the scene.
+    pub memory_bytes: u64,
+    /// The same by piece; `scene` is the scene itself.
+    pub memory: BTreeMap<String, u64>,
+    /// All work counters of one frame, by `piece/pass.name`.
+    pub counts: BTreeMap<String, u64>,
+    /// What the image was compared with; null if it was not.
+    pub reference: Option<Reference>,
+    /// Errors by slot, `image` and `covered`, against the reference of the same light paths.
+    pub error: Option<BTreeMap<String, ImageErrors>>,
+    /// The same against full light transport.
+    pub error_full: Option<BTreeMap<String, ImageErrors>>,
+}
+
+/// One pass of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    /// The piece that it belongs to.
+    pub piece: String,
+    /// The pass within its piece.
+    pub pass: String,
+    /// GPU time, serialised; zeros for a skipped pass.
+    pub ms: Spread,
+    /// Its median over the serialised frame's median.
+    pub share: f64,
+    /// Why it did not run; null if it did.
+    pub skipped: Option<String>,
+    /// What it did in one frame.
+    pub work: BTreeMap<String, u64>,
+}
+
+/// One piece of a run: its passes together.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Piece {
+    /// The piece.
+    pub piece: String,
+    /// Spread of the sum of its passes.
+    pub ms: Spread,
+    /// Its median over the serialised frame's median.
+    pub share: f64,
+}
+
+/// What a run's image was compared with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// The technique that made it.
+    pub technique: String,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Scatterings between the light and the first visible surface; null if they are not limited.
+    pub bounces: Option<u32>,
+}
+
+/// How far an image is from another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImageErrors {
+    /// Root of the mean squared difference of linear radiance.
+    pub rmse: f64,
+    /// `rmse` over the mean of the reference.
+    pub rrmse: f64,
+    /// Mean of the squared difference over the squared reference, with ε = 1 % of the mean of the reference.
+    pub relmse: f64,
+    /// Peak signal-to-noise ratio of the tone-mapped images, dB.
+    pub psnr: f64,
+    /// Structural similarity of the tone-mapped images.
+    pub ssim: f64,
+    /// Mean FLIP.
+    pub flip: f64,
+}
+
+/// What could not be run, and why.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// The scene.
+    pub scene: String,
+    /// The technique and preset; null if the scene itself failed.
+    pub technique: Option<String>,
+    /// One sentence.
+    pub error: String,
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.technique {
+            Some(technique) => write!(f, "{} with {technique}: {}", self.scene, self.error),
+            None => write!(f, "{}: {}", self.scene, self.error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::samples::tests::example_run;
+
+    fn names(value: &Value) -> Vec<&str> {
+        value.as_object().expect("an object").keys().map(String::as_str).collect()
+    }
+
+    fn has(value: &Value, expected: &[&str]) {
+        let names = names(value);
+        for name in expected {
+            assert!(names.contains(name), "{name} is not among {names:?}");
+        }
+    }
+
+    #[test]
+    fn the_schema_keeps_its_names() {
+        let mut report = Report::new(&DeviceReport::default());
+        report.runs.push(example_run());
+        let json = serde_json::to_value(&report).expect("plain data");
+        has(&json, &["schema", "irradia", "device", "runs", "failures"]);
+        assert_eq!(json["schema"], "irradia-bench/1");
+        has(&json["device"], &["name", "type", "driver", "api"]);
+        let run = &json["runs"][0];
+        has(run, &["scene", "technique", "methods", "preset", "settings", "size", "frames", "frame_ms", "passes"]);
+        has(run, &["unexplained_ms", "memory_bytes", "counts", "reference", "error", "error_full"]);
+        has(run, &["serialised_ms", "unchanged_ms", "first_frame_ms", "pipeline_ms", "compile_ms", "load_ms"]);
+        has(run, &["camera", "warmup", "memory", "pieces"]);
+        for spread in [&run["frame_ms"], &run["serialised_ms"], &run["unchanged_ms"], &run["passes"][0]["ms"]] {
+            has(spread, &["min", "median", "p95"]);
+        }
+        has(&run["passes"][0], &["piece", "pass", "ms", "share", "skipped", "work"]);
+        assert!(run["passes"][0]["skipped"].is_null());
+        assert!(run["passes"].as_array().expect("a list").iter().any(|pass| pass["skipped"].is_string()));
+        for null in ["reference", "error", "error_full"] {
+            assert!(run[null].is_null(), "{null}");
+        }
+        has(&run["methods"], &["emission", "direct", "diffuse", "caustics", "specular"]);
+    }
+
+    #[test]
+    fn a_report_reads_back() {
+        let mut report = Report::new(&DeviceReport::default());
+        let errors = BTreeMap::from([("image".to_owned(), ImageErrors { rmse: 0.1, ..ImageErrors::default() })]);
+        let reference = Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1) };
+        report.runs.push(Run { reference: Some(reference), error: Some(errors), ..example_run() });
+        report.failures.push(Failure { scene: "a".to_owned(), technique: None, error: "no such scene".to_owned() });
+        let text = serde_json::to_string_pretty(&report).expect("plain data");
+        assert_eq!(serde_json::from_str::<Report>(&text).expect("its own"), report);
+    }
+
+    #[test]
+    fn failures_are_sentences() {
+        let mut failure = Failure { scene: "ring".to_owned(), technique: None, error: "no such file".to_owned() };
+        assert_eq!(failure.to_string(), "ring: no such file");
+        failure.technique = Some("rsm (draft)".to_owned());
+        assert_eq!(failure.to_string(), "ring with rsm (draft): no such file");
+    }
+}

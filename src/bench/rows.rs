@@ -1,0 +1,191 @@
+//! What a table says of a run, row by row; text, Markdown and CSV differ only in how they write it down.
+
+use serde_json::Value;
+
+use super::report::{Pass, Run};
+use super::statistics::Spread;
+use super::units;
+
+/// What a row is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowKind {
+    /// Several passes together.
+    Piece,
+    /// One pass, indented below its piece.
+    PassOfPiece,
+    /// The only pass of its piece.
+    Pass,
+    /// The frame as a whole, or what belongs to no pass.
+    Frame,
+}
+
+impl RowKind {
+    /// The word for it in CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            RowKind::Piece => "piece",
+            RowKind::Pass | RowKind::PassOfPiece => "pass",
+            RowKind::Frame => "frame",
+        }
+    }
+}
+
+/// One row of a run's table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What it is about.
+    pub kind: RowKind,
+    /// Its full name: `piece`, `piece/pass`, or words such as `unchanged frame`.
+    pub name: String,
+    /// The median, milliseconds, or the only measurement.
+    pub ms: Option<f64>,
+    /// The least and the 95th percentile, milliseconds.
+    pub range_ms: Option<(f64, f64)>,
+    /// Part of the serialised frame, of one.
+    pub share: Option<f64>,
+    /// Whether the pass did not run; `text` says why.
+    pub skipped: bool,
+    /// What it did, why it did not, or what there is to say.
+    pub text: String,
+}
+
+impl Row {
+    fn new(kind: RowKind, name: impl Into<String>) -> Row {
+        Row { kind, name: name.into(), ms: None, range_ms: None, share: None, skipped: false, text: String::new() }
+    }
+
+    fn frame(name: &str) -> Row {
+        Row::new(RowKind::Frame, name)
+    }
+
+    fn spread(self, spread: Spread) -> Row {
+        Row { ms: Some(spread.median), range_ms: Some((spread.min, spread.p95)), ..self }
+    }
+
+    fn share(self, share: f64) -> Row {
+        Row { share: Some(share), ..self }
+    }
+
+    fn text(self, text: impl Into<String>) -> Row {
+        Row { text: text.into(), ..self }
+    }
+
+    /// The name for people: a pass below its piece does not repeat the piece.
+    pub fn label(&self) -> String {
+        match (self.kind, self.name.split_once('/')) {
+            (RowKind::PassOfPiece, Some((_, pass))) => format!("  {pass}"),
+            _ => self.name.clone(),
+        }
+    }
+
+    /// The cells after the label: median, least and 95th percentile in milliseconds, share, text.
+    pub fn cells(&self) -> [String; 5] {
+        let ms = if self.skipped { Some("skipped".to_owned()) } else { self.ms.map(units::milliseconds) };
+        let (min, p95) = self.range_ms.map(|(min, p95)| (units::milliseconds(min), units::milliseconds(p95))).unzip();
+        let share = self.share.map(units::percent);
+        [ms, min, p95, share, Some(self.text.clone())].map(Option::unwrap_or_default)
+    }
+}
+
+/// The header of the rows of [`rows`].
+pub const HEADER: [&str; 6] = ["pass", "ms", "min", "p95", "share", "work"];
+
+/// All rows of a run: its passes by piece, then the frame as a whole.
+pub fn rows(run: &Run) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for piece in &run.pieces {
+        let passes: Vec<&Pass> = run.passes.iter().filter(|pass| pass.piece == piece.piece).collect();
+        if passes.len() > 1 {
+            rows.push(Row::new(RowKind::Piece, &piece.piece).spread(piece.ms).share(piece.share));
+        }
+        let kind = if passes.len() > 1 { RowKind::PassOfPiece } else { RowKind::Pass };
+        rows.extend(passes.into_iter().map(|pass| pass_row(kind, pass)));
+    }
+    let unexplained_share = run.unexplained_ms / run.serialised_ms.median;
+    let unexplained = Row { ms: Some(run.unexplained_ms), ..Row::frame("unexplained") };
+    rows.push(if unexplained_share.is_finite() { unexplained.share(unexplained_share) } else { unexplained });
+    rows.push(Row::frame("serialised frame").spread(run.serialised_ms).text("barriers between all passes"));
+    rows.push(Row::frame("frame").spread(run.frame_ms).text("passes overlap as the driver likes"));
+    rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text("nothing changed since the last"));
+    let first = units::milliseconds(run.first_frame_ms);
+    let compile = format!("first frame {first} ms on the host, pipelines {} ms", units::milliseconds(run.pipeline_ms));
+    rows.push(Row { ms: Some(run.compile_ms), ..Row::frame("compile").text(compile) });
+    rows.push(Row::frame("memory").text(memory(run)));
+    rows.push(Row::frame("settings").text(settings(run)));
+    rows
+}
+
+/// The technique and its preset: `rsm (default)`.
+pub fn contender(run: &Run) -> String {
+    format!("{} ({})", run.technique, run.preset)
+}
+
+/// What all runs of a scene share: camera, size, rounds.
+pub fn caption(run: &Run) -> String {
+    let [width, height] = run.size;
+    let (rounds, camera, load) = (run.frames, &run.camera, units::milliseconds(run.load_ms));
+    let warmup = run.warmup + 1;
+    format!("{width}x{height}, camera {camera}, {rounds} rounds after {warmup} frames of warm-up, scene loaded in {load} ms")
+}
+
+fn pass_row(kind: RowKind, pass: &Pass) -> Row {
+    let row = Row::new(kind, format!("{}/{}", pass.piece, pass.pass));
+    match &pass.skipped {
+        Some(reason) => Row { skipped: true, ..row.text(reason) },
+        None => row.spread(pass.ms).share(pass.share).text(work(pass)),
+    }
+}
+
+fn work(pass: &Pass) -> String {
+    let counts: Vec<String> = pass.work.iter().map(|(name, count)| format!("{} {name}", units::count(*count))).collect();
+    counts.join(", ")
+}
+
+/// The whole, then its parts from the largest.
+fn memory(run: &Run) -> String {
+    let mut parts: Vec<_> = run.memory.iter().filter(|(_, bytes)| **bytes > 0).collect();
+    parts.sort_by_key(|(_, bytes)| std::cmp::Reverse(**bytes));
+    let parts: Vec<String> = parts.into_iter().map(|(piece, bytes)| format!("{piece} {}", units::bytes(*bytes))).collect();
+    let total = units::bytes(run.memory_bytes);
+    if parts.is_empty() { total } else { format!("{total}: {}", parts.join(", ")) }
+}
+
+fn settings(run: &Run) -> String {
+    let settings = run.settings.iter().flat_map(|(piece, options)| {
+        let options = options.as_object().into_iter().flatten();
+        options.map(move |(key, value)| format!("{piece}.{key}={}", plain(value)))
+    });
+    settings.collect::<Vec<_>>().join(" ")
+}
+
+fn plain(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::samples::tests::example_run;
+
+    #[test]
+    fn passes_come_by_piece_and_the_frame_last() {
+        let rows = rows(&example_run());
+        let labels: Vec<String> = rows.iter().map(Row::label).collect();
+        let passes = ["gbuffer/draw", "light-views", "  draw", "  reduce", "rsm/gather", "caustics/splat"];
+        let frame = ["unexplained", "serialised frame", "frame", "unchanged frame", "compile", "memory", "settings"];
+        assert_eq!(labels, [&passes[..], &frame[..]].concat());
+        assert_eq!(rows[0].cells(), ["4.500", "4.000", "5.000", "22.0 %", "262 k triangles"]);
+        assert_eq!(rows[4].text, "786 k invocations, 1.2 G vpls");
+        assert_eq!(rows[5].cells(), ["skipped", "", "", "", "no specular surface"]);
+        assert_eq!(rows[6].cells(), ["0.500", "", "", "2.4 %", ""]);
+        assert_eq!(rows[11].text, "100 MiB: scene 80.0 MiB, gbuffer 20.0 MiB");
+        assert!(rows[12].text.contains("rsm.vpls=256"), "{}", rows[12].text);
+    }
+
+    #[test]
+    fn an_empty_run_has_no_undefined_shares() {
+        for row in rows(&Run::default()) {
+            assert!(!row.cells().concat().contains("NaN"), "{row:?}");
+        }
+    }
+}

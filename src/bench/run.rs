@@ -1,0 +1,195 @@
+//! The rounds: every contender renders in every round, in turn, so that drift of the machine hits all alike.
+
+use super::report::{Failure, Run};
+use super::samples::Samples;
+use crate::renderer::{Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
+use crate::scene::{CameraView, Scene};
+
+/// The scene that the contenders render.
+#[derive(Debug)]
+pub struct Subject<'a> {
+    /// Its name in the report.
+    pub name: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Where it is seen from.
+    pub camera: &'a CameraView,
+    /// Host time that loading it took, milliseconds.
+    pub load_ms: f64,
+}
+
+/// How the contenders are measured.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Rounds.
+    pub frames: u32,
+    /// Frames of each contender before the rounds, after its first one.
+    pub warmup: u32,
+    /// Whether a picture is wanted of every contender, made after the rounds.
+    pub pictures: bool,
+}
+
+impl Options {
+    /// The frames that one contender renders for its timings.
+    pub fn frames_per_contender(&self) -> u64 {
+        1 + u64::from(self.warmup) + 3 * u64::from(self.frames)
+    }
+}
+
+/// A contender that came through.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    /// What was measured.
+    pub run: Run,
+    /// The tone-mapped picture, if pictures were wanted.
+    pub picture: Option<Vec<[u8; 3]>>,
+}
+
+/// One set of settings and what became of it.
+type Outcome = Result<Finished, Failure>;
+
+/// A contender during the rounds.
+struct Contender {
+    settings: Settings,
+    state: Result<(Renderer, Samples), String>,
+}
+
+/// Measures `contenders` on one scene. Each has a renderer of its own, all alive at once. First each renders one frame
+/// that is timed apart, for it holds the driver's compilation, and the frames of warm-up. Then in each round each renders
+///
+/// 1. a frame made anew, timed as a whole;
+/// 2. a frame made anew, timed pass by pass;
+/// 3. a frame in which nothing has changed, timed as a whole.
+///
+/// No image is read back in these. `progress` is called after every frame. A contender that fails does not stop the others.
+pub fn run(
+    context: &Context,
+    subject: &Subject<'_>,
+    contenders: &[Settings],
+    options: &Options,
+    progress: &mut dyn FnMut(),
+) -> Vec<Outcome> {
+    let mut contenders: Vec<Contender> = contenders.iter().map(|settings| Contender::new(context, settings)).collect();
+    for contender in &mut contenders {
+        contender.proceed(|renderer, samples| warm_up(renderer, samples, subject, options, progress));
+    }
+    for _ in 0..options.frames {
+        for contender in &mut contenders {
+            contender.proceed(|renderer, samples| round(renderer, samples, subject, options, progress));
+        }
+    }
+    contenders.into_iter().map(|contender| contender.finish(subject, options)).collect()
+}
+
+/// Why a contender dropped out, as a sentence.
+type Stopped = Box<dyn std::error::Error>;
+
+impl Contender {
+    fn new(context: &Context, settings: &Settings) -> Contender {
+        let renderer = Renderer::new(context, settings.clone());
+        let state = renderer.map(|renderer| (renderer, Samples::default())).map_err(|error| sentence(&error));
+        Contender { settings: settings.clone(), state }
+    }
+
+    /// Renders on unless the contender has failed before.
+    fn proceed(&mut self, step: impl FnOnce(&mut Renderer, &mut Samples) -> Result<(), Stopped>) {
+        let Ok((renderer, samples)) = &mut self.state else { return };
+        if let Err(error) = step(renderer, samples) {
+            self.state = Err(sentence(&*error));
+        }
+    }
+
+    fn finish(self, subject: &Subject<'_>, options: &Options) -> Outcome {
+        let settings = &self.settings;
+        let failure = |error: String| {
+            let technique = Some(format!("{} ({})", settings.technique.name(), settings.preset.name()));
+            Failure { scene: subject.name.to_owned(), technique, error }
+        };
+        let (mut renderer, samples) = self.state.map_err(failure)?;
+        let picture = if options.pictures {
+            let request = FrameRequest { tonemap: Some(ToneMap::default()), read_back: true, ..request(subject, options, Timing::Frame) };
+            renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?.display
+        } else {
+            None
+        };
+        let methods = Slot::ALL.into_iter().map(|slot| (slot, settings.methods.name_of(slot).to_owned()));
+        let run = samples.finish(Run {
+            scene: subject.name.to_owned(),
+            technique: settings.technique.name().to_owned(),
+            methods: methods.collect(),
+            preset: settings.preset.name().to_owned(),
+            settings: settings.options(),
+            camera: subject.camera.name.clone(),
+            size: options.size,
+            warmup: options.warmup,
+            load_ms: subject.load_ms,
+            ..Run::default()
+        });
+        Ok(Finished { run, picture })
+    }
+}
+
+/// The first frame, and the frames of warm-up; these in turn as they come in a round.
+fn warm_up(
+    renderer: &mut Renderer,
+    samples: &mut Samples,
+    subject: &Subject<'_>,
+    options: &Options,
+    progress: &mut dyn FnMut(),
+) -> Result<(), Stopped> {
+    samples.add_first(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
+    for index in 0..options.warmup {
+        renderer.invalidate();
+        let timing = if index % 2 == 0 { Timing::Passes } else { Timing::Frame };
+        samples.add_warmup(&render(renderer, subject, options, timing, progress)?.timings);
+    }
+    Ok(())
+}
+
+fn round(
+    renderer: &mut Renderer,
+    samples: &mut Samples,
+    subject: &Subject<'_>,
+    options: &Options,
+    progress: &mut dyn FnMut(),
+) -> Result<(), Stopped> {
+    renderer.invalidate();
+    samples.add_frame(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
+    renderer.invalidate();
+    samples.add_passes(&render(renderer, subject, options, Timing::Passes, progress)?.timings)?;
+    samples.add_unchanged(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
+    Ok(())
+}
+
+fn render(
+    renderer: &mut Renderer,
+    subject: &Subject<'_>,
+    options: &Options,
+    timing: Timing,
+    progress: &mut dyn FnMut(),
+) -> Result<Frame, Stopped> {
+    let frame = renderer.render(subject.scene, &request(subject, options, timing))?;
+    progress();
+    Ok(frame)
+}
+
+/// The image alone: what a host shows, before its tone mapping.
+fn request(subject: &Subject<'_>, options: &Options, timing: Timing) -> FrameRequest {
+    FrameRequest {
+        size: options.size,
+        camera: subject.camera.clone(),
+        slots: Vec::new(),
+        image: true,
+        tonemap: None,
+        timing,
+        read_back: false,
+    }
+}
+
+/// An error and its causes, `a: b: c`.
+fn sentence(error: &(dyn std::error::Error + 'static)) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
+}

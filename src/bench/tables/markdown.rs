@@ -1,0 +1,77 @@
+//! Reports as Markdown, for documents: the summary first, then every scene pass by pass.
+
+use std::fmt::Write;
+
+use super::{SUMMARY_HEADER, by_scene, summary_cells};
+use crate::bench::report::Report;
+use crate::bench::rows::{self, HEADER};
+
+/// The whole report.
+pub fn markdown(report: &Report) -> String {
+    let mut out = String::new();
+    let device = &report.device;
+    line(&mut out, &format!("irradia {} on {} ({}, {}, Vulkan {})", report.irradia, device.name, device.kind, device.driver, device.api));
+    line(&mut out, "");
+    table(&mut out, &SUMMARY_HEADER, 2..7, report.runs.iter().map(|run| summary_cells(run).to_vec()));
+    for runs in by_scene(&report.runs) {
+        for (index, run) in runs.iter().enumerate() {
+            if index == 0 {
+                line(&mut out, &format!("\n## {}\n\n{}", run.scene, rows::caption(run)));
+            }
+            line(&mut out, &format!("\n### {}\n", rows::contender(run)));
+            let cells = rows::rows(run).into_iter().map(|row| [row.name.clone()].into_iter().chain(row.cells()).collect());
+            table(&mut out, &HEADER, 1..5, cells);
+        }
+    }
+    if !report.failures.is_empty() {
+        line(&mut out, "\n## Failures\n");
+        for failure in &report.failures {
+            line(&mut out, &format!("- {failure}"));
+        }
+    }
+    out
+}
+
+/// A table whose columns in `numbers` are aligned to the right.
+fn table(out: &mut String, header: &[&str], numbers: std::ops::Range<usize>, rows: impl Iterator<Item = Vec<String>>) {
+    line(out, &format!("| {} |", header.join(" | ")));
+    let rules: Vec<&str> = (0..header.len()).map(|index| if numbers.contains(&index) { "--:" } else { "---" }).collect();
+    line(out, &format!("|{}|", rules.join("|")));
+    for row in rows {
+        let cells: Vec<String> = row.iter().map(|cell| cell.replace('|', "\\|").replace('\n', " ")).collect();
+        line(out, &format!("| {} |", cells.join(" | ")));
+    }
+}
+
+fn line(out: &mut String, text: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(out, "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::report::{Failure, Run};
+    use crate::bench::samples::tests::example_run;
+    use crate::renderer::DeviceReport;
+
+    #[test]
+    fn every_table_is_sound() {
+        let mut report = Report::new(&DeviceReport::default());
+        report.runs = vec![example_run(), Run { scene: "a|b".to_owned(), ..example_run() }];
+        report.failures.push(Failure { scene: "ring".to_owned(), technique: None, error: "no such file".to_owned() });
+        let text = markdown(&report);
+        let mut columns = None;
+        for line in text.lines() {
+            let bars = line.replace("\\|", "").matches('|').count();
+            match columns {
+                Some(expected) if bars > 0 => assert_eq!(bars, expected, "{line}"),
+                _ => columns = (bars > 0).then_some(bars),
+            }
+        }
+        for words in ["| sponza | rsm (default) | 18.50 |", "## a|b", "### rsm (default)", "- ring: no such file"] {
+            assert!(text.contains(words), "{words} is not in\n{text}");
+        }
+        assert!(text.contains("| caustics/splat | skipped |  |  |  | no specular surface |"), "{text}");
+    }
+}

@@ -1,0 +1,48 @@
+//! Numbers as people read them: three digits and a unit.
+
+/// Milliseconds with about three digits that count: `0.123`, `12.3`, `1234`.
+pub(crate) fn milliseconds(value: f64) -> String {
+    let magnitude = value.abs();
+    let decimals = if magnitude < 9.9995 { 3 } else if magnitude < 99.995 { 2 } else if magnitude < 999.95 { 1 } else { 0 };
+    format!("{value:.decimals$}")
+}
+
+/// A count: `999`, `1.2 k`, `262 k`, `1.2 M`, `3.4 G`.
+pub(crate) fn count(value: u64) -> String {
+    scaled(value as f64, 1000.0, &["", " k", " M", " G", " T", " P", " E"])
+}
+
+/// Bytes in powers of 1024: `512 B`, `1.5 KiB`, `120 MiB`.
+pub(crate) fn bytes(value: u64) -> String {
+    scaled(value as f64, 1024.0, &[" B", " KiB", " MiB", " GiB", " TiB", " PiB", " EiB"])
+}
+
+/// A share of one as a percentage: `12.3 %`.
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+fn scaled(value: f64, step: f64, units: &[&str]) -> String {
+    let (mut value, mut unit) = (value, 0);
+    // 999.5 would print as 1000 of the smaller unit.
+    while value >= if unit == 0 { step } else { step - 0.5 } && unit + 1 < units.len() {
+        value /= step;
+        unit += 1;
+    }
+    let decimals = if unit == 0 || value >= 99.95 { 0 } else { 1 };
+    format!("{value:.decimals$}{}", units[unit])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_and_a_unit() {
+        assert_eq!([0.0, 0.1234, 9.9996, 45.678, 456.78, 45678.9].map(milliseconds), ["0.000", "0.123", "10.00", "45.68", "456.8", "45679"]);
+        assert_eq!([0, 999, 1000, 1234, 262_267, 999_999, 1_200_000].map(count), ["0", "999", "1.0 k", "1.2 k", "262 k", "1.0 M", "1.2 M"]);
+        assert_eq!(count(u64::MAX), "18.4 E");
+        assert_eq!([0, 1023, 1024, 1536, 120 << 20].map(bytes), ["0 B", "1023 B", "1.0 KiB", "1.5 KiB", "120 MiB"]);
+        assert_eq!(percent(0.1234), "12.3 %");
+    }
+}
