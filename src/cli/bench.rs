@@ -1,0 +1,175 @@
+//! `irradia bench`: techniques side by side on scenes; tables to standard output, reports to files.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+use irradia::bench::report::{Failure, Report, Run};
+use irradia::bench::{Finished, Options, Subject, rows, run as measure, tables};
+use irradia::output::{self, AtomicFile};
+use irradia::renderer::{Context, Preset, Settings, Technique};
+
+use super::attributes::Picture;
+use super::method_args::OptionArgs;
+use super::scene_args::SceneArgs;
+use super::terminal::Progress;
+use super::values::{self, Choice};
+use super::{Session, files};
+
+/// Measure techniques on scenes, pass by pass
+#[derive(Debug, Args)]
+pub(crate) struct BenchArgs {
+    /// .gltf or .glb files, or names of built-in scenes
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<String>,
+    /// The techniques to compare, a list, or all
+    #[arg(long, value_delimiter = ',', value_parser = values::technique_choice(), default_value = Technique::Rsm.name())]
+    technique: Vec<Choice<Technique>>,
+    /// The presets to measure each technique at, a list
+    #[arg(long, value_delimiter = ',', value_parser = values::preset(), default_value = Preset::Default.name())]
+    preset: Vec<Preset>,
+    /// Rounds; each technique renders in each round in turn
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+    /// Frames of each technique before the rounds, after its first, which is timed apart
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    warmup: u32,
+    /// Write everything as JSON, schema irradia-bench/1
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write the tables as CSV
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the tables as Markdown
+    #[arg(long, value_name = "FILE")]
+    md: Option<PathBuf>,
+    /// Write a PNG of every run into this folder
+    #[arg(long, value_name = "DIR")]
+    images: Option<PathBuf>,
+    #[command(flatten)]
+    options: OptionArgs,
+    #[command(flatten)]
+    scene_args: SceneArgs,
+}
+
+/// Runs all scenes, prints their tables, writes the reports. What fails is told at the end.
+pub(crate) fn run(args: &BenchArgs, session: &Session<'_>) -> Result<()> {
+    let bench = Bench::new(args, session)?;
+    let mut report = Report::new(&bench.context.device());
+    let device = &report.device;
+    let heading = format!("irradia {} on {} ({}, {}, Vulkan {})\n\n", report.irradia, device.name, device.kind, device.driver, device.api);
+    session.terminal.print(&heading)?;
+
+    let progress = session.terminal.progress(bench.frames_per_scene() * args.scenes.len() as u64);
+    for (index, spec) in args.scenes.iter().enumerate() {
+        progress.about(spec);
+        let (runs, failures) = match bench.scene(spec, &report.runs, &progress) {
+            Ok(outcome) => outcome,
+            Err(error) => (Vec::new(), vec![Failure { scene: spec.clone(), technique: None, error: format!("{error:#}") }]),
+        };
+        progress.at(bench.frames_per_scene() * (index as u64 + 1));
+        if !runs.is_empty() {
+            session.terminal.print(&format!("{}\n", tables::scene_text(&runs.iter().collect::<Vec<_>>())))?;
+        }
+        report.runs.extend(runs);
+        report.failures.extend(failures);
+    }
+    drop(progress);
+    if report.runs.len() > 1 {
+        session.terminal.print(&tables::summary_text(&report.runs))?;
+    }
+    write_reports(args, &report)?;
+    session.check_validation(&bench.context)?;
+    match report.failures.as_slice() {
+        [] => Ok(()),
+        [failure] => bail!("{failure}"),
+        failures => bail!("{} runs failed: {}", failures.len(), sentences(failures)),
+    }
+}
+
+/// What stays the same from scene to scene.
+struct Bench<'a> {
+    args: &'a BenchArgs,
+    context: Context,
+    contenders: Vec<Settings>,
+    options: Options,
+}
+
+impl Bench<'_> {
+    /// Finds out what can go wrong before the first frame: devices, and files that could not be written.
+    fn new<'a>(args: &'a BenchArgs, session: &Session<'_>) -> Result<Bench<'a>> {
+        for path in [&args.json, &args.csv, &args.md].into_iter().flatten() {
+            output::check_target(path)?;
+        }
+        if let Some(folder) = &args.images {
+            fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
+        }
+        let mut contenders = Vec::new();
+        for technique in Choice::expand(&args.technique, &Technique::ALL) {
+            for preset in &args.preset {
+                contenders.push(args.options.settings(technique, *preset)?);
+            }
+        }
+        let pictures = args.images.is_some();
+        let options = Options { size: args.scene_args.size, frames: args.frames, warmup: args.warmup, pictures };
+        Ok(Bench { args, context: session.context()?, contenders, options })
+    }
+
+    fn frames_per_scene(&self) -> u64 {
+        self.options.frames_per_contender() * self.contenders.len() as u64
+    }
+
+    /// Measures all contenders on one scene and writes their pictures.
+    fn scene(&self, spec: &str, earlier: &[Run], progress: &Progress) -> Result<(Vec<Run>, Vec<Failure>)> {
+        let loaded = self.args.scene_args.open(spec)?;
+        let camera = self.args.scene_args.view(&loaded.scene)?;
+        // Two files may hold scenes of the same name; then the path tells them apart.
+        let known = earlier.iter().any(|run| run.scene == loaded.scene.name);
+        let name = if known { spec } else { &loaded.scene.name };
+        let subject = Subject { name, scene: &loaded.scene, camera: &camera, load_ms: loaded.load_ms };
+        let outcomes = measure(&self.context, &subject, &self.contenders, &self.options, &mut || progress.step());
+        let (mut runs, mut failures) = (Vec::new(), Vec::new());
+        for (outcome, settings) in outcomes.into_iter().zip(&self.contenders) {
+            match outcome {
+                Ok(finished) => {
+                    if let Err(error) = self.write_picture(&finished, settings) {
+                        let technique = Some(rows::contender(&finished.run));
+                        failures.push(Failure { scene: name.to_owned(), technique, error: format!("{error:#}") });
+                    }
+                    runs.push(finished.run);
+                }
+                Err(failure) => failures.push(failure),
+            }
+        }
+        Ok((runs, failures))
+    }
+
+    fn write_picture(&self, finished: &Finished, settings: &Settings) -> Result<()> {
+        let (Some(folder), Some(pixels)) = (&self.args.images, &finished.picture) else { return Ok(()) };
+        let run = &finished.run;
+        let path = folder.join(files::from_words(&[&run.scene, &run.technique, &run.preset]) + ".png");
+        let device = self.context.device();
+        let picture = Picture { scene: &run.scene, camera: &run.camera, frame: 0, size: run.size, settings, device: &device };
+        Ok(output::write_png(&path, run.size, pixels, &picture.attributes())?)
+    }
+}
+
+fn write_reports(args: &BenchArgs, report: &Report) -> Result<()> {
+    let write = |path: &Option<PathBuf>, text: &dyn Fn() -> Result<String>| match path {
+        Some(path) => write_text(path, &text()?),
+        None => Ok(()),
+    };
+    write(&args.json, &|| Ok(serde_json::to_string_pretty(report)? + "\n"))?;
+    write(&args.csv, &|| Ok(tables::csv(report)))?;
+    write(&args.md, &|| Ok(tables::markdown(report)))
+}
+
+fn write_text(path: &Path, text: &str) -> Result<()> {
+    Ok(AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?)
+}
+
+fn sentences(failures: &[Failure]) -> String {
+    failures.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}

@@ -1,0 +1,49 @@
+//! `irradia graph`: the passes of a frame, and which are skipped and why.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use irradia::output::AtomicFile;
+use irradia::renderer::{FrameRequest, Renderer, Timing};
+
+use super::Session;
+use super::method_args::MethodArgs;
+use super::scene_args::SceneArgs;
+
+/// Show the passes of a frame, and which are skipped and why
+#[derive(Debug, Args)]
+pub(crate) struct GraphArgs {
+    /// A .gltf or .glb file, or the name of a built-in scene
+    scene: String,
+    /// Also write the graph for Graphviz to this file
+    #[arg(long, value_name = "FILE")]
+    dot: Option<PathBuf>,
+    #[command(flatten)]
+    methods: MethodArgs,
+    #[command(flatten)]
+    scene_args: SceneArgs,
+}
+
+/// Describes the frame that the bench would measure; nothing is rendered.
+pub(crate) fn run(args: &GraphArgs, session: &Session<'_>) -> Result<()> {
+    let settings = args.methods.settings()?;
+    let scene = args.scene_args.open(&args.scene)?.scene;
+    let context = session.context()?;
+    let request = FrameRequest {
+        size: args.scene_args.size,
+        camera: args.scene_args.view(&scene)?,
+        slots: Vec::new(),
+        image: true,
+        tonemap: None,
+        timing: Timing::Frame,
+        read_back: false,
+    };
+    let description = Renderer::new(&context, settings)?.describe(&scene, &request)?;
+    if let Some(path) = &args.dot {
+        AtomicFile::write_whole(path, |file| file.write_all(description.dot().as_bytes()))?;
+    }
+    session.terminal.print(&description.text())?;
+    session.check_validation(&context)
+}

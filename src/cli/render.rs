@@ -1,0 +1,137 @@
+//! `irradia render`: frames of a scene to files.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context as _, Result};
+use clap::Args;
+use irradia::output::{self, ImageFormat};
+use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
+
+use super::attributes::Picture;
+use super::method_args::MethodArgs;
+use super::scene_args::SceneArgs;
+use super::values::{self, Choice, FrameRange, ImagePath};
+use super::{Session, files, wrong_usage};
+
+/// Render frames of a scene to EXR or PNG files
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    /// A .gltf or .glb file, or the name of a built-in scene
+    scene: String,
+    /// Where the image goes: .exr holds linear radiance and slots, .png the tone-mapped image
+    #[arg(short, long, value_name = "FILE", value_parser = values::image_path)]
+    output: ImagePath,
+    /// The frame of the scene's animation, at 30 frames a second
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frame: u32,
+    /// Frames A to B, both included, a file each: out.0007.exr for out.exr, or the number in place of ####
+    #[arg(long, value_name = "A..B", value_parser = values::frame_range, conflicts_with = "frame")]
+    frames: Option<FrameRange>,
+    /// Slots that an EXR file holds besides the image, as layers: a list, or all
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::slot_choice())]
+    slots: Vec<Choice<Slot>>,
+    /// How a PNG's pixels are made from radiance [default: aces]
+    #[arg(long, value_parser = values::tone_map())]
+    tonemap: Option<ToneMap>,
+    #[command(flatten)]
+    methods: MethodArgs,
+    #[command(flatten)]
+    scene_args: SceneArgs,
+}
+
+/// Host time by what it was spent on, seconds.
+#[derive(Default)]
+struct Spent {
+    render: f64,
+    write: f64,
+}
+
+/// Renders every frame asked for and says what was written.
+pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
+    let format = args.output.format;
+    if format == ImageFormat::Png && !args.slots.is_empty() {
+        wrong_usage("a PNG holds the image alone; write an .exr to get its --slots");
+    }
+    if format == ImageFormat::Exr && args.tonemap.is_some() {
+        tracing::warn!("an EXR holds linear radiance, so --tonemap changes nothing");
+    }
+    let start = Instant::now();
+    output::check_target(&path_of(args, args.frames.map_or(args.frame, |range| range.first)))?;
+    let settings = args.methods.settings()?;
+    let loaded = args.scene_args.open(&args.scene)?;
+    let mut scene = loaded.scene;
+    let context = session.context()?;
+    let mut renderer = Renderer::new(&context, settings)?;
+    let device = context.device();
+
+    let FrameRange { first, last } = args.frames.unwrap_or(FrameRange { first: args.frame, last: args.frame });
+    let progress = (first < last).then(|| session.terminal.progress(u64::from(last - first) + 1));
+    let mut spent = Spent::default();
+    for number in first..=last {
+        scene.set_frame(number);
+        let request = request(args, args.scene_args.view(&scene)?);
+        let rendering = Instant::now();
+        let frame = renderer.render(&scene, &request)?;
+        spent.render += rendering.elapsed().as_secs_f64();
+
+        let camera = &request.camera.name;
+        let picture =
+            Picture { scene: &scene.name, camera, frame: number, size: frame.size, settings: renderer.settings(), device: &device };
+        let writing = Instant::now();
+        write(&path_of(args, number), format, &frame, &picture, request.tonemap)?;
+        spent.write += writing.elapsed().as_secs_f64();
+        if let Some(progress) = &progress {
+            progress.step();
+        }
+    }
+    drop(progress);
+    let (names, [width, height]) = (written_names(args, first, last), args.scene_args.size);
+    session.terminal.say(&format!(
+        "wrote {names} ({width}x{height}) in {:.2} s: scene {:.2} s, rendering {:.2} s, writing {:.2} s",
+        start.elapsed().as_secs_f64(),
+        1e-3 * loaded.load_ms,
+        spent.render,
+        spent.write,
+    ));
+    session.check_validation(&context)
+}
+
+fn request(args: &RenderArgs, camera: irradia::scene::CameraView) -> FrameRequest {
+    let png = args.output.format == ImageFormat::Png;
+    FrameRequest {
+        size: args.scene_args.size,
+        camera,
+        slots: Choice::expand(&args.slots, &Slot::ALL),
+        image: !png,
+        tonemap: png.then(|| args.tonemap.unwrap_or_default()),
+        timing: Timing::Frame,
+        read_back: true,
+    }
+}
+
+fn path_of(args: &RenderArgs, frame: u32) -> std::path::PathBuf {
+    let path = &args.output.path;
+    if args.frames.is_some() { files::numbered(path, frame) } else { files::single(path, frame) }
+}
+
+fn written_names(args: &RenderArgs, first: u32, last: u32) -> String {
+    let (from, to) = (path_of(args, first), path_of(args, last));
+    if from == to { from.display().to_string() } else { format!("{} to {}", from.display(), to.display()) }
+}
+
+fn write(path: &Path, format: ImageFormat, frame: &Frame, picture: &Picture<'_>, tonemap: Option<ToneMap>) -> Result<()> {
+    let mut attributes = picture.attributes();
+    match format {
+        ImageFormat::Exr => {
+            let image = frame.image.as_ref().context("the renderer gave back no image")?;
+            output::write_exr(path, image, &frame.slots, &attributes)?;
+        }
+        ImageFormat::Png => {
+            let display = frame.display.as_ref().context("the renderer gave back no display values")?;
+            attributes.extend(tonemap.map(|map| ("tonemap".to_owned(), values::tone_map_name(map).to_owned())));
+            output::write_png(path, frame.size, display, &attributes)?;
+        }
+    }
+    Ok(())
+}

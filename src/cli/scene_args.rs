@@ -1,0 +1,65 @@
+//! The scene of a command, what is added to it, and where it is seen from.
+
+use std::time::Instant;
+
+use clap::Args;
+use irradia::scene::{CameraView, LightSpec, Scene, parse_sky};
+
+use super::values;
+
+/// View and lights.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// Width and height of the image in pixels
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = values::size)]
+    pub(crate) size: [u32; 2],
+    /// The camera, by name or index [default: the scene's first, or a view of the whole scene if it has none]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub(crate) camera: Option<String>,
+    /// A light to add, repeatable: sun:AZIMUTH,ELEVATION[,W/m²], point:X,Y,Z,W/sr or spot:…
+    #[arg(long = "light", value_name = "LIGHT", value_parser = LightSpec::parse, allow_hyphen_values = true)]
+    lights: Vec<LightSpec>,
+    /// Radiance of the sky, W/(m² sr)
+    #[arg(long, value_name = "R,G,B", value_parser = parse_sky)]
+    sky: Option<[f32; 3]>,
+}
+
+/// A scene ready to render, and the host time that loading it took.
+pub(crate) struct LoadedScene {
+    pub(crate) scene: Scene,
+    pub(crate) load_ms: f64,
+}
+
+impl SceneArgs {
+    /// Opens a path or a built-in scene, adds the lights, and warns of what the user should know.
+    pub(crate) fn open(&self, spec: &str) -> anyhow::Result<LoadedScene> {
+        let start = Instant::now();
+        let mut scene = Scene::open(spec)?;
+        let load_ms = 1e3 * start.elapsed().as_secs_f64();
+        for light in &self.lights {
+            scene.add_light_spec(light);
+        }
+        if let Some(sky) = self.sky {
+            scene.set_sky(sky);
+        }
+        for warning in &scene.warnings {
+            tracing::warn!("{warning}");
+        }
+        if !scene.facts().lit {
+            tracing::warn!(
+                "{} has no light and stays black; add one with --light sun:45,60 or --light point:X,Y,Z,W/sr, or a sky with --sky 1,1,1",
+                scene.name
+            );
+        }
+        Ok(LoadedScene { scene, load_ms })
+    }
+
+    /// Where the scene, as it is now, is seen from.
+    pub(crate) fn view(&self, scene: &Scene) -> anyhow::Result<CameraView> {
+        let view = scene.camera_view(self.camera.as_deref())?;
+        if view.automatic {
+            tracing::info!("{} has no camera; a view of the whole scene is taken", scene.name);
+        }
+        Ok(view)
+    }
+}

@@ -1,0 +1,26 @@
+//! `irradia scenes`: the built-in scenes and what each tests.
+
+use anyhow::Result;
+use clap::Args;
+use irradia::scene::{Scene, builtin_names};
+
+use super::Session;
+
+/// List the built-in scenes
+#[derive(Debug, Args)]
+pub(crate) struct ScenesArgs {}
+
+/// One line a scene: name, size, lights, what it tests.
+pub(crate) fn run(_: &ScenesArgs, session: &Session<'_>) -> Result<()> {
+    let names = builtin_names();
+    let width = names.iter().map(|name| name.len()).max().unwrap_or_default();
+    let mut text = String::new();
+    for name in names {
+        let scene = Scene::open(name)?;
+        let facts = scene.facts();
+        let (triangles, lights) = (facts.triangles, facts.lights);
+        let description = scene.description.as_deref().unwrap_or_default();
+        text += &format!("{name:width$}  {triangles:>7} triangles  {lights:>3} lights  {description}\n");
+    }
+    session.terminal.print(&text)
+}

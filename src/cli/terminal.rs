@@ -1,0 +1,191 @@
+//! What people see: results on standard output; errors, warnings, log lines and progress on standard error.
+
+use std::collections::HashSet;
+use std::fmt;
+use std::io::{self, IsTerminal, Write};
+use std::sync::Mutex;
+
+use anyhow::Context as _;
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use tracing::field::{Field, Visit};
+use tracing::{Event, Level, Subscriber};
+use tracing_subscriber::fmt::format::Writer;
+use tracing_subscriber::fmt::{FmtContext, FormatEvent, FormatFields, MakeWriter};
+use tracing_subscriber::registry::LookupSpan;
+
+/// The variable that overrides which log lines appear, in the syntax of tracing-subscriber: `irradia=debug`.
+const LOG_VARIABLE: &str = "IRRADIA_LOG";
+
+/// How much is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    /// Errors alone.
+    Quiet,
+    /// Warnings, progress, what was written.
+    Normal,
+    /// The same, and what is being done.
+    Verbose,
+    /// Whatever there is to say.
+    Everything,
+}
+
+/// Standard error, shared by sentences and progress bars.
+pub(crate) struct Terminal {
+    verbosity: Verbosity,
+    bars: MultiProgress,
+}
+
+impl Terminal {
+    /// Starts logging. Progress bars are drawn on a terminal alone.
+    pub(crate) fn new(verbosity: Verbosity) -> Terminal {
+        let drawn = io::stderr().is_terminal() && verbosity != Verbosity::Quiet;
+        let target = if drawn { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bars = MultiProgress::with_draw_target(target);
+        let level = match verbosity {
+            Verbosity::Quiet => "error",
+            Verbosity::Normal => "warn",
+            Verbosity::Verbose => "info",
+            Verbosity::Everything => "debug",
+        };
+        let wanted = std::env::var(LOG_VARIABLE).unwrap_or_else(|_| level.to_owned());
+        // A second start, as tests might do, leaves the first in place.
+        let _ = tracing_subscriber::fmt()
+            .with_env_filter(tracing_subscriber::EnvFilter::new(wanted))
+            .with_writer(AboveBars(bars.clone()))
+            .event_format(Sentences::default())
+            .try_init();
+        Terminal { verbosity, bars }
+    }
+
+    /// Writes a result to standard output. A reader that has gone away, as `head` does, has what it wanted.
+    pub(crate) fn print(&self, text: &str) -> anyhow::Result<()> {
+        let written = self.bars.suspend(|| {
+            let mut out = io::stdout().lock();
+            out.write_all(text.as_bytes()).and_then(|()| out.flush())
+        });
+        match written {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            written => written.context("standard output cannot be written"),
+        }
+    }
+
+    /// Says what was done, unless it should be quiet.
+    pub(crate) fn say(&self, text: &str) {
+        if self.verbosity != Verbosity::Quiet {
+            self.line(text);
+        }
+    }
+
+    /// Says what went wrong.
+    pub(crate) fn error(&self, text: &str) {
+        self.line(&format!("irradia: {text}"));
+    }
+
+    /// A bar over `count` steps; it is cleared when dropped.
+    pub(crate) fn progress(&self, count: u64) -> Progress {
+        let bar = self.bars.add(ProgressBar::new(count));
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} (left: {eta}) {msg}") {
+            bar.set_style(style);
+        }
+        Progress(bar)
+    }
+
+    fn line(&self, text: &str) {
+        // Nobody is left to tell if standard error is closed.
+        self.bars.suspend(|| drop(writeln!(io::stderr(), "{text}")));
+    }
+}
+
+/// A progress bar.
+pub(crate) struct Progress(ProgressBar);
+
+impl Progress {
+    /// What the next steps are part of.
+    pub(crate) fn about(&self, what: &str) {
+        self.0.set_message(what.to_owned());
+    }
+
+    /// One step is done.
+    pub(crate) fn step(&self) {
+        self.0.inc(1);
+    }
+
+    /// As many steps are done, however many were.
+    pub(crate) fn at(&self, position: u64) {
+        self.0.set_position(position);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Log lines to standard error, above the bars.
+struct AboveBars(MultiProgress);
+
+impl<'a> MakeWriter<'a> for AboveBars {
+    type Writer = LineAboveBars<'a>;
+
+    fn make_writer(&'a self) -> LineAboveBars<'a> {
+        LineAboveBars(&self.0)
+    }
+}
+
+struct LineAboveBars<'a>(&'a MultiProgress);
+
+impl Write for LineAboveBars<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.suspend(|| io::stderr().write_all(bytes))?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        io::stderr().flush()
+    }
+}
+
+/// Log lines as `irradia: warning: …`; the same warning comes once.
+#[derive(Default)]
+struct Sentences {
+    said: Mutex<HashSet<String>>,
+}
+
+impl<S: Subscriber + for<'a> LookupSpan<'a>, N: for<'a> FormatFields<'a> + 'static> FormatEvent<S, N> for Sentences {
+    fn format_event(&self, _: &FmtContext<'_, S, N>, mut writer: Writer<'_>, event: &Event<'_>) -> fmt::Result {
+        let mut sentence = Sentence::default();
+        event.record(&mut sentence);
+        let level = *event.metadata().level();
+        let text = sentence.message + &sentence.fields;
+        match level {
+            Level::ERROR => writeln!(writer, "irradia: {text}"),
+            Level::WARN => {
+                let new = self.said.lock().is_ok_and(|mut said| said.insert(text.clone()));
+                if new { writeln!(writer, "irradia: warning: {text}") } else { Ok(()) }
+            }
+            _ => writeln!(writer, "irradia: {}: {text}", level.as_str().to_lowercase()),
+        }
+    }
+}
+
+/// The text of an event: its message, then other fields as `, name = value`.
+#[derive(Default)]
+struct Sentence {
+    message: String,
+    fields: String,
+}
+
+impl Visit for Sentence {
+    fn record_str(&mut self, field: &Field, value: &str) {
+        self.record_debug(field, &format_args!("{value}"));
+    }
+
+    fn record_debug(&mut self, field: &Field, value: &dyn fmt::Debug) {
+        if field.name() == "message" {
+            self.message = format!("{value:?}");
+        } else {
+            self.fields += &format!(", {} = {value:?}", field.name());
+        }
+    }
+}
