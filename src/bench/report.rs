@@ -55,7 +55,12 @@ pub struct Device {
 
 impl From<&DeviceReport> for Device {
     fn from(device: &DeviceReport) -> Device {
-        Device { name: device.name.clone(), kind: device.kind.clone(), driver: device.driver.clone(), api: device.api.clone() }
+        Device {
+            name: device.name.clone(),
+            kind: device.kind.clone(),
+            driver: device.driver.clone(),
+            api: device.api.clone(),
+        }
     }
 }
 

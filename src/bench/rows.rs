@@ -125,7 +125,9 @@ pub fn caption(run: &Run) -> String {
     let [width, height] = run.size;
     let (rounds, camera, load) = (run.frames, &run.camera, units::milliseconds(run.load_ms));
     let warmup = run.warmup + 1;
-    format!("{width}x{height}, camera {camera}, {rounds} rounds after {warmup} frames of warm-up, scene loaded in {load} ms")
+    format!(
+        "{width}x{height}, camera {camera}, {rounds} rounds after {warmup} frames of warm-up, scene loaded in {load} ms"
+    )
 }
 
 fn pass_row(kind: RowKind, pass: &Pass) -> Row {
@@ -137,7 +139,8 @@ fn pass_row(kind: RowKind, pass: &Pass) -> Row {
 }
 
 fn work(pass: &Pass) -> String {
-    let counts: Vec<String> = pass.work.iter().map(|(name, count)| format!("{} {name}", units::count(*count))).collect();
+    let counts: Vec<String> =
+        pass.work.iter().map(|(name, count)| format!("{} {name}", units::count(*count))).collect();
     counts.join(", ")
 }
 
@@ -145,7 +148,8 @@ fn work(pass: &Pass) -> String {
 fn memory(run: &Run) -> String {
     let mut parts: Vec<_> = run.memory.iter().filter(|(_, bytes)| **bytes > 0).collect();
     parts.sort_by_key(|(_, bytes)| std::cmp::Reverse(**bytes));
-    let parts: Vec<String> = parts.into_iter().map(|(piece, bytes)| format!("{piece} {}", units::bytes(*bytes))).collect();
+    let parts: Vec<String> =
+        parts.into_iter().map(|(piece, bytes)| format!("{piece} {}", units::bytes(*bytes))).collect();
     let total = units::bytes(run.memory_bytes);
     if parts.is_empty() { total } else { format!("{total}: {}", parts.join(", ")) }
 }

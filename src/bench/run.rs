@@ -109,7 +109,11 @@ impl Contender {
         };
         let (mut renderer, samples) = self.state.map_err(failure)?;
         let picture = if options.pictures {
-            let request = FrameRequest { tonemap: Some(ToneMap::default()), read_back: true, ..request(subject, options, Timing::Frame) };
+            let request = FrameRequest {
+                tonemap: Some(ToneMap::default()),
+                read_back: true,
+                ..request(subject, options, Timing::Frame)
+            };
             renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?.display
         } else {
             None

@@ -38,7 +38,9 @@ struct PassSamples {
 
 /// A pass ran but the device gave no times for it.
 #[derive(Debug, thiserror::Error)]
-#[error("the device gave no time for the pass {piece}/{pass}, and the bench has nothing to say without; choose another with --device")]
+#[error(
+    "the device gave no time for the pass {piece}/{pass}, and the bench has nothing to say without; choose another with --device"
+)]
 pub(crate) struct Untimed {
     piece: String,
     pass: String,

@@ -3,7 +3,15 @@
 /// Milliseconds with about three digits that count: `0.123`, `12.3`, `1234`.
 pub(crate) fn milliseconds(value: f64) -> String {
     let magnitude = value.abs();
-    let decimals = if magnitude < 9.9995 { 3 } else if magnitude < 99.995 { 2 } else if magnitude < 999.95 { 1 } else { 0 };
+    let decimals = if magnitude < 9.9995 {
+        3
+    } else if magnitude < 99.995 {
+        2
+    } else if magnitude < 999.95 {
+        1
+    } else {
+        0
+    };
     format!("{value:.decimals$}")
 }
 
@@ -39,8 +47,14 @@ mod tests {
 
     #[test]
     fn three_digits_and_a_unit() {
-        assert_eq!([0.0, 0.1234, 9.9996, 45.678, 456.78, 45678.9].map(milliseconds), ["0.000", "0.123", "10.00", "45.68", "456.8", "45679"]);
-        assert_eq!([0, 999, 1000, 1234, 262_267, 999_999, 1_200_000].map(count), ["0", "999", "1.0 k", "1.2 k", "262 k", "1.0 M", "1.2 M"]);
+        assert_eq!(
+            [0.0, 0.1234, 9.9996, 45.678, 456.78, 45678.9].map(milliseconds),
+            ["0.000", "0.123", "10.00", "45.68", "456.8", "45679"]
+        );
+        assert_eq!(
+            [0, 999, 1000, 1234, 262_267, 999_999, 1_200_000].map(count),
+            ["0", "999", "1.0 k", "1.2 k", "262 k", "1.0 M", "1.2 M"]
+        );
         assert_eq!(count(u64::MAX), "18.4 E");
         assert_eq!([0, 1023, 1024, 1536, 120 << 20].map(bytes), ["0 B", "1023 B", "1.0 KiB", "1.5 KiB", "120 MiB"]);
         assert_eq!(percent(0.1234), "12.3 %");

@@ -59,7 +59,10 @@ pub(crate) fn run(args: &BenchArgs, session: &Session<'_>) -> Result<()> {
     let bench = Bench::new(args, session)?;
     let mut report = Report::new(&bench.context.device());
     let device = &report.device;
-    let heading = format!("irradia {} on {} ({}, {}, Vulkan {})\n\n", report.irradia, device.name, device.kind, device.driver, device.api);
+    let heading = format!(
+        "irradia {} on {} ({}, {}, Vulkan {})\n\n",
+        report.irradia, device.name, device.kind, device.driver, device.api
+    );
     session.terminal.print(&heading)?;
 
     let progress = session.terminal.progress(bench.frames_per_scene() * args.scenes.len() as u64);
@@ -67,7 +70,9 @@ pub(crate) fn run(args: &BenchArgs, session: &Session<'_>) -> Result<()> {
         progress.about(spec);
         let (runs, failures) = match bench.scene(spec, &report.runs, &progress) {
             Ok(outcome) => outcome,
-            Err(error) => (Vec::new(), vec![Failure { scene: spec.clone(), technique: None, error: format!("{error:#}") }]),
+            Err(error) => {
+                (Vec::new(), vec![Failure { scene: spec.clone(), technique: None, error: format!("{error:#}") }])
+            }
         };
         progress.at(bench.frames_per_scene() * (index as u64 + 1));
         if !runs.is_empty() {
@@ -151,7 +156,8 @@ impl Bench<'_> {
         let run = &finished.run;
         let path = folder.join(files::from_words(&[&run.scene, &run.technique, &run.preset]) + ".png");
         let device = self.context.device();
-        let picture = Picture { scene: &run.scene, camera: &run.camera, frame: 0, size: run.size, settings, device: &device };
+        let picture =
+            Picture { scene: &run.scene, camera: &run.camera, frame: 0, size: run.size, settings, device: &device };
         Ok(output::write_png(&path, run.size, pixels, &picture.attributes())?)
     }
 }

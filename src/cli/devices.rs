@@ -14,7 +14,9 @@ pub(crate) struct DevicesArgs {}
 pub(crate) fn run(_: &DevicesArgs, session: &Session<'_>) -> Result<()> {
     let devices = Context::devices()?;
     if devices.is_empty() {
-        bail!("there is no Vulkan device; install a driver, such as mesa-vulkan-drivers, which also has one for the CPU");
+        bail!(
+            "there is no Vulkan device; install a driver, such as mesa-vulkan-drivers, which also has one for the CPU"
+        );
     }
     session.terminal.print(&devices.iter().map(paragraph).collect::<String>())
 }
@@ -45,7 +47,10 @@ mod tests {
             kind: "cpu".to_owned(),
             driver: "Mesa 25.0.7".to_owned(),
             api: "1.4.305".to_owned(),
-            limits: vec![("image side".to_owned(), "16384".to_owned()), ("push constants".to_owned(), "256 B".to_owned())],
+            limits: vec![
+                ("image side".to_owned(), "16384".to_owned()),
+                ("push constants".to_owned(), "256 B".to_owned()),
+            ],
             unfit: Some("it has no timestamps".to_owned()),
             default: true,
         };

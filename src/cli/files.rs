@@ -25,7 +25,8 @@ pub(crate) fn single(path: &Path, frame: u32) -> PathBuf {
 
 /// A name for a file made of words that may hold anything, such as a scene's name.
 pub(crate) fn from_words(words: &[&str]) -> String {
-    let harmless = |character: char| if character.is_alphanumeric() || "-_.".contains(character) { character } else { '_' };
+    let harmless =
+        |character: char| if character.is_alphanumeric() || "-_.".contains(character) { character } else { '_' };
     words.join("-").chars().map(harmless).collect()
 }
 

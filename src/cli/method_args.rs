@@ -2,12 +2,15 @@
 
 use anyhow::Result;
 use clap::Args;
-use irradia::renderer::{CausticsMethod, DiffuseMethod, DirectMethod, Preset, Settings, Slot, SpecularMethod, Technique};
+use irradia::renderer::{
+    CausticsMethod, DiffuseMethod, DirectMethod, Preset, Settings, Slot, SpecularMethod, Technique,
+};
 
 use super::values::{self, Setting};
 
 /// Everything but the technique and the preset, of which a bench takes several.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Methods")]
 pub(crate) struct OptionArgs {
     /// The method of the direct slot, instead of the technique's
     #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(DirectMethod::NAMES))]
@@ -50,6 +53,7 @@ impl OptionArgs {
 
 /// One technique at one preset.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Methods")]
 pub(crate) struct MethodArgs {
     /// The technique: a named set of methods
     #[arg(long, value_parser = values::technique(), default_value = Technique::Rsm.name())]

@@ -18,7 +18,8 @@ mod values;
 use std::process::ExitCode;
 
 use anyhow::bail;
-use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use irradia::renderer::{Context, ContextOptions, Validation};
 
 use self::terminal::{Terminal, Verbosity};
@@ -35,6 +36,7 @@ struct Cli {
 
 /// What every subcommand takes.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Everywhere")]
 struct GlobalArgs {
     /// The device to use: a part of its name or its index in `irradia devices` [default: the first discrete GPU, else
     /// integrated, else CPU]
@@ -130,17 +132,22 @@ impl Session<'_> {
 }
 
 /// Wrong usage that only several arguments together show: says so as the parser would, and ends with status 2.
-fn wrong_usage(message: &str) -> ! {
-    use clap::CommandFactory;
-    Cli::command().error(clap::error::ErrorKind::ArgumentConflict, message).exit()
+fn wrong_usage(subcommand: &str, message: &str) -> ! {
+    let mut cli = Cli::command();
+    cli.build();
+    let command = match cli.find_subcommand_mut(subcommand) {
+        Some(command) => command,
+        None => &mut cli,
+    };
+    command.error(ErrorKind::ArgumentConflict, message).exit()
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use super::*;
 
     #[test]
     fn the_arguments_are_consistent() {
-        super::Cli::command().debug_assert();
+        Cli::command().debug_assert();
     }
 }

@@ -51,7 +51,7 @@ struct Spent {
 pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
     let format = args.output.format;
     if format == ImageFormat::Png && !args.slots.is_empty() {
-        wrong_usage("a PNG holds the image alone; write an .exr to get its --slots");
+        wrong_usage("render", "a PNG holds the image alone; write an .exr to get its --slots");
     }
     if format == ImageFormat::Exr && args.tonemap.is_some() {
         tracing::warn!("an EXR holds linear radiance, so --tonemap changes nothing");
@@ -76,8 +76,14 @@ pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
         spent.render += rendering.elapsed().as_secs_f64();
 
         let camera = &request.camera.name;
-        let picture =
-            Picture { scene: &scene.name, camera, frame: number, size: frame.size, settings: renderer.settings(), device: &device };
+        let picture = Picture {
+            scene: &scene.name,
+            camera,
+            frame: number,
+            size: frame.size,
+            settings: renderer.settings(),
+            device: &device,
+        };
         let writing = Instant::now();
         write(&path_of(args, number), format, &frame, &picture, request.tonemap)?;
         spent.write += writing.elapsed().as_secs_f64();
@@ -120,7 +126,13 @@ fn written_names(args: &RenderArgs, first: u32, last: u32) -> String {
     if from == to { from.display().to_string() } else { format!("{} to {}", from.display(), to.display()) }
 }
 
-fn write(path: &Path, format: ImageFormat, frame: &Frame, picture: &Picture<'_>, tonemap: Option<ToneMap>) -> Result<()> {
+fn write(
+    path: &Path,
+    format: ImageFormat,
+    frame: &Frame,
+    picture: &Picture<'_>,
+    tonemap: Option<ToneMap>,
+) -> Result<()> {
     let mut attributes = picture.attributes();
     match format {
         ImageFormat::Exr => {

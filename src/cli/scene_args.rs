@@ -9,6 +9,7 @@ use super::values;
 
 /// View and lights.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "View and light")]
 pub(crate) struct SceneArgs {
     /// Width and height of the image in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = values::size)]

@@ -14,13 +14,13 @@ pub(crate) struct ScenesArgs {}
 pub(crate) fn run(_: &ScenesArgs, session: &Session<'_>) -> Result<()> {
     let names = builtin_names();
     let width = names.iter().map(|name| name.len()).max().unwrap_or_default();
-    let mut text = String::new();
+    let mut text = format!("{:width$}  triangles  lights  what it tests\n", "scene");
     for name in names {
         let scene = Scene::open(name)?;
         let facts = scene.facts();
         let (triangles, lights) = (facts.triangles, facts.lights);
         let description = scene.description.as_deref().unwrap_or_default();
-        text += &format!("{name:width$}  {triangles:>7} triangles  {lights:>3} lights  {description}\n");
+        text += &format!("{name:width$}  {triangles:>9}  {lights:>6}  {description}\n");
     }
     session.terminal.print(&text)
 }

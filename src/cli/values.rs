@@ -96,9 +96,8 @@ pub(crate) fn technique() -> impl TypedValueParser<Value = Technique> {
 
 /// The name of a technique, or `all`.
 pub(crate) fn technique_choice() -> impl TypedValueParser<Value = Choice<Technique>> {
-    PossibleValuesParser::new(Technique::names().into_iter().chain([ALL])).try_map(|name| {
-        if name == ALL { Ok(Choice::All) } else { Technique::from_name(&name).map(Choice::One) }
-    })
+    PossibleValuesParser::new(Technique::names().into_iter().chain([ALL]))
+        .try_map(|name| if name == ALL { Ok(Choice::All) } else { Technique::from_name(&name).map(Choice::One) })
 }
 
 /// The name of a preset.

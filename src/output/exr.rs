@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels,
-    ReadLayers, SmallVec, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    ReadChannels, ReadLayers, SmallVec, Text, Vec2, WritableImage,
 };
 
 use super::{AtomicFile, Attributes, OutputError};
@@ -44,7 +44,9 @@ pub fn write_exr(
     let pixel_count = image.size[0] as usize * image.size[1] as usize;
     let layers = slots.iter().map(|(slot, layer)| (format!("{slot}."), layer));
     let layers: Vec<_> = [(String::new(), image)].into_iter().chain(layers).collect();
-    if let Some((name, layer)) = layers.iter().find(|(_, layer)| layer.size != image.size || layer.pixels.len() != pixel_count) {
+    if let Some((name, layer)) =
+        layers.iter().find(|(_, layer)| layer.size != image.size || layer.pixels.len() != pixel_count)
+    {
         let [width, height] = image.size;
         let reason = format!("layer {name:?} has {} pixels, the image {width}x{height}", layer.pixels.len());
         return Err(OutputError::write(path, reason));
@@ -57,10 +59,14 @@ pub fn write_exr(
     });
     let size = Vec2(image.size[0] as usize, image.size[1] as usize);
     let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::default() };
-    let layer = Layer::new(size, LayerAttributes::default(), encoding, AnyChannels::sort(channels.collect::<SmallVec<_>>()));
+    let layer =
+        Layer::new(size, LayerAttributes::default(), encoding, AnyChannels::sort(channels.collect::<SmallVec<_>>()));
     let mut document = Image::from_layer(layer);
     document.attributes.chromaticities = Some(REC_709);
-    document.attributes.other.extend(attributes.iter().map(|(name, value)| (text(name), AttributeValue::Text(text(value)))));
+    document
+        .attributes
+        .other
+        .extend(attributes.iter().map(|(name, value)| (text(name), AttributeValue::Text(text(value)))));
     AtomicFile::write_whole(path, |file| document.write().to_buffered(file))
 }
 
@@ -165,7 +171,8 @@ mod tests {
         let folder = TestFolder::new("exr-errors");
         let path = folder.0.join("a.exr");
         let slots = BTreeMap::from([(Slot::Direct, gradient([3, 2], 0.0))]);
-        let message = write_exr(&path, &gradient([2, 2], 0.0), &slots, &Attributes::new()).expect_err("sizes differ").to_string();
+        let message =
+            write_exr(&path, &gradient([2, 2], 0.0), &slots, &Attributes::new()).expect_err("sizes differ").to_string();
         assert!(message.contains("direct"), "{message}");
         assert!(folder.names().is_empty());
         let message = read_exr(&path).expect_err("there is none").to_string();

@@ -4,7 +4,19 @@ use crate::bench::report::{Report, Run};
 use crate::bench::rows::{self, Row};
 
 const HEADER: [&str; 13] = [
-    "scene", "technique", "preset", "width", "height", "kind", "name", "median_ms", "min_ms", "p95_ms", "share", "skipped", "text",
+    "scene",
+    "technique",
+    "preset",
+    "width",
+    "height",
+    "kind",
+    "name",
+    "median_ms",
+    "min_ms",
+    "p95_ms",
+    "share",
+    "skipped",
+    "text",
 ];
 
 /// The whole report. A number that a row does not have is empty.
@@ -63,7 +75,8 @@ mod tests {
         assert_eq!(lines[0], HEADER.join(","));
         assert_eq!(lines.len(), 1 + rows::rows(&report.runs[0]).len());
         let share = report.runs[0].passes[0].share;
-        let expected = format!("\"a, \"\"b\"\"\",rsm,default,1024,768,pass,gbuffer/draw,4.5,4,5,{share},false,262 k triangles");
+        let expected =
+            format!("\"a, \"\"b\"\"\",rsm,default,1024,768,pass,gbuffer/draw,4.5,4,5,{share},false,262 k triangles");
         assert_eq!(lines[1], expected);
         assert!(text.contains("pass,light-views/reduce,1,1,1,"), "a pass below its piece has its full name");
         assert!(text.contains("caustics/splat,,,,,true,no specular surface"), "{text}");

@@ -10,7 +10,13 @@ use crate::bench::rows::{self, HEADER};
 pub fn markdown(report: &Report) -> String {
     let mut out = String::new();
     let device = &report.device;
-    line(&mut out, &format!("irradia {} on {} ({}, {}, Vulkan {})", report.irradia, device.name, device.kind, device.driver, device.api));
+    line(
+        &mut out,
+        &format!(
+            "irradia {} on {} ({}, {}, Vulkan {})",
+            report.irradia, device.name, device.kind, device.driver, device.api
+        ),
+    );
     line(&mut out, "");
     table(&mut out, &SUMMARY_HEADER, 2..7, report.runs.iter().map(|run| summary_cells(run).to_vec()));
     for runs in by_scene(&report.runs) {
@@ -19,7 +25,8 @@ pub fn markdown(report: &Report) -> String {
                 line(&mut out, &format!("\n## {}\n\n{}", run.scene, rows::caption(run)));
             }
             line(&mut out, &format!("\n### {}\n", rows::contender(run)));
-            let cells = rows::rows(run).into_iter().map(|row| [row.name.clone()].into_iter().chain(row.cells()).collect());
+            let cells =
+                rows::rows(run).into_iter().map(|row| [row.name.clone()].into_iter().chain(row.cells()).collect());
             table(&mut out, &HEADER, 1..5, cells);
         }
     }
@@ -35,7 +42,8 @@ pub fn markdown(report: &Report) -> String {
 /// A table whose columns in `numbers` are aligned to the right.
 fn table(out: &mut String, header: &[&str], numbers: std::ops::Range<usize>, rows: impl Iterator<Item = Vec<String>>) {
     line(out, &format!("| {} |", header.join(" | ")));
-    let rules: Vec<&str> = (0..header.len()).map(|index| if numbers.contains(&index) { "--:" } else { "---" }).collect();
+    let rules: Vec<&str> =
+        (0..header.len()).map(|index| if numbers.contains(&index) { "--:" } else { "---" }).collect();
     line(out, &format!("|{}|", rules.join("|")));
     for row in rows {
         let cells: Vec<String> = row.iter().map(|cell| cell.replace('|', "\\|").replace('\n', " ")).collect();

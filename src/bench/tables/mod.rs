@@ -12,7 +12,8 @@ use super::report::Run;
 use super::{rows, units};
 
 /// The header of [`summary_cells`].
-const SUMMARY_HEADER: [&str; 7] = ["scene", "technique", "frame ms", "serialised ms", "unchanged ms", "memory", "compile ms"];
+const SUMMARY_HEADER: [&str; 7] =
+    ["scene", "technique", "frame ms", "serialised ms", "unchanged ms", "memory", "compile ms"];
 
 /// One row of the table over all scenes and techniques.
 fn summary_cells(run: &Run) -> [String; 7] {

@@ -58,7 +58,9 @@ mod tests {
 
     fn wide_run() -> Run {
         let mut run = example_run();
-        run.passes[0].work.insert("a counter with a name that takes more room than there is in one line of a table".to_owned(), 7);
+        run.passes[0]
+            .work
+            .insert("a counter with a name that takes more room than there is in one line of a table".to_owned(), 7);
         run
     }
 

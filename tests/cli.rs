@@ -1,0 +1,296 @@
+//! The command line from outside: exit statuses, messages, and files that appear whole or not at all.
+//!
+//! The tests that render need a Vulkan device; the others run anywhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use irradia::bench::report::Report;
+use irradia::output::{read_exr, tonemap};
+use irradia::renderer::{Slot, ToneMap};
+use irradia::scene::builtin_names;
+
+fn irradia(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_irradia")).args(arguments).output().expect("the program starts")
+}
+
+/// An empty folder for one test, made anew every time.
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    if path.exists() {
+        fs::remove_dir_all(&path).expect("the test's own folder");
+    }
+    fs::create_dir_all(&path).expect("the target folder is writable");
+    path
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the test's own folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("the target folder is UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A failure is one line that begins with the program's name, and nothing on standard output.
+fn assert_fails(arguments: &[&str], words: &[&str]) {
+    let output = irradia(arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+    assert!(message.starts_with("irradia: "), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(output.stdout.is_empty());
+    for word in words {
+        assert!(message.contains(word), "{word} is not in: {message}");
+    }
+}
+
+fn assert_wrong_usage(arguments: &[&str], words: &[&str]) {
+    let output = irradia(arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{word} is not in: {message}");
+    }
+}
+
+fn succeed(arguments: &[&str]) -> Output {
+    let output = irradia(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    output
+}
+
+fn any_scene() -> &'static str {
+    builtin_names().first().copied().expect("there are built-in scenes")
+}
+
+/// A triangle without a light.
+fn write_unlit_scene(folder: &Path) -> PathBuf {
+    let path = folder.join("unlit.gltf");
+    // Positions (0,0,0), (1,0,0), (0,1,0) as little-endian float32.
+    let buffer = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let document = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
+            "bufferViews":[{{"buffer":0,"byteLength":36}}],
+            "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{buffer}"}}]}}"#
+    );
+    fs::write(&path, document).expect("the test's own folder");
+    path
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    assert_wrong_usage(&[], &["Usage"]);
+    assert_wrong_usage(&["paint"], &["paint"]);
+    assert_wrong_usage(&["render", "ring"], &["--output"]);
+    assert_wrong_usage(&["bench"], &["SCENE"]);
+    assert_wrong_usage(&["bench", "ring", "--frames", "0"], &["--frames"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.png", "--size", "640"], &["WIDTHxHEIGHT"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.png", "--frames", "9..3"], &["FIRST..LAST"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.png", "--frame", "1", "--frames", "0..3"], &["--frame"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.png", "--slots", "all"], &["a PNG holds the image alone"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--slots", "sky"], &["emission", "direct", "all"]);
+    assert_wrong_usage(&["scenes", "--quiet", "--verbose"], &["--quiet"]);
+}
+
+#[test]
+fn names_that_do_not_exist_list_those_that_do() {
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--technique", "magic"], &["magic", "direct", "rsm"]);
+    assert_wrong_usage(&["bench", "ring", "--technique", "rsm,magic"], &["magic", "direct", "rsm", "all"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--preset", "best"], &["draft", "default", "high", "paper"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--diffuse", "magic"], &["none", "rsm"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--set", "rsm.vlps=3"], &["rsm.vlps", "rsm.vpls"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--set", "lights.resolution=5"], &["16 to 4096"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a.jpg"], &["a.jpg", ".exr", ".png"]);
+    assert_wrong_usage(&["render", "ring", "-o", "a"], &[".exr", ".png"]);
+}
+
+#[test]
+fn a_missing_scene_is_one_sentence_and_no_file() {
+    let folder = folder("missing-scene");
+    let image = folder.join("a.png");
+    assert_fails(&["render", "no-such-scene", "-o", text(&image)], &["no-such-scene"]);
+    assert_fails(&["render", "no/such/scene.gltf", "-o", text(&image)], &["no/such/scene.gltf"]);
+    assert_fails(&["graph", "no-such-scene"], &["no-such-scene"]);
+    assert!(names_in(&folder).is_empty());
+}
+
+#[test]
+fn a_folder_that_does_not_exist_is_found_before_rendering() {
+    let missing = folder("missing-folder").join("none");
+    assert_fails(&["render", any_scene(), "-o", text(&missing.join("a.png"))], &["there is no folder"]);
+    assert_fails(&["bench", any_scene(), "--json", text(&missing.join("a.json"))], &["there is no folder"]);
+}
+
+#[test]
+fn scenes_lists_all_of_them() {
+    let listed = String::from_utf8(succeed(&["scenes"]).stdout).expect("UTF-8");
+    assert_eq!(listed.lines().count(), 1 + builtin_names().len(), "a header and a line each");
+    for name in builtin_names() {
+        assert!(listed.lines().any(|line| line.split_whitespace().next() == Some(name)), "{name} is not in\n{listed}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+    let mut child = command.arg("scenes").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("ends");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+}
+
+#[test]
+fn devices_marks_one_default() {
+    let listed = String::from_utf8(succeed(&["devices"]).stdout).expect("UTF-8");
+    assert_eq!(listed.lines().filter(|line| line.starts_with('*')).count(), 1, "{listed}");
+}
+
+#[test]
+fn a_device_that_does_not_exist_is_a_failure() {
+    assert_fails(&["graph", any_scene(), "--device", "no-such-device"], &["no-such-device"]);
+}
+
+#[test]
+fn an_exr_holds_image_slots_and_how_it_was_made() {
+    let folder = folder("exr");
+    let path = folder.join("a.exr");
+    let output = succeed(&[
+        "render",
+        any_scene(),
+        "-o",
+        text(&path),
+        "--size",
+        "48x32",
+        "--slots",
+        "all",
+        "--set",
+        "rsm.vpls=16",
+    ]);
+    assert!(stderr(&output).contains("wrote"), "{}", stderr(&output));
+    assert!(output.stdout.is_empty());
+    assert_eq!(names_in(&folder), ["a.exr"]);
+    let read = read_exr(&path).expect("an EXR of ours");
+    assert_eq!(read.image.size, [48, 32]);
+    assert_eq!(read.slots.keys().copied().collect::<Vec<_>>(), Slot::ALL);
+    for (pixel, image) in read.image.pixels.iter().enumerate() {
+        for (channel, value) in image.iter().enumerate() {
+            let sum: f32 = read.slots.values().map(|slot| slot.pixels[pixel][channel]).sum();
+            assert!((sum - value).abs() <= 1e-4 * value.abs().max(1e-3), "pixel {pixel}: slots {sum}, image {value}");
+        }
+    }
+    let attribute = |name: &str| read.attributes.get(name).map(String::as_str).unwrap_or_default();
+    assert_eq!(attribute("scene"), any_scene());
+    assert_eq!(attribute("technique"), "rsm");
+    assert_eq!(attribute("size"), "48x32");
+    assert_eq!(attribute("frame"), "0");
+    assert_eq!(attribute("irradia"), env!("CARGO_PKG_VERSION"));
+    assert!(attribute("settings").contains("\"vpls\":16"), "{}", attribute("settings"));
+    assert!(!attribute("device").is_empty() && !attribute("driver").is_empty() && !attribute("camera").is_empty());
+}
+
+#[test]
+fn a_png_shows_what_the_tone_map_makes_of_the_exr() {
+    let folder = folder("png");
+    let exr = folder.join("a.exr");
+    succeed(&["render", any_scene(), "-o", text(&exr), "--size", "48x32"]);
+    let image = read_exr(&exr).expect("an EXR of ours").image;
+    for (name, map) in [("linear", ToneMap::Linear), ("aces", ToneMap::Aces), ("drago", ToneMap::Drago)] {
+        let png = folder.join(name).with_extension("png");
+        succeed(&["render", any_scene(), "-o", text(&png), "--size", "48x32", "--tonemap", name]);
+        let shown = image::open(&png).expect("a PNG").to_rgb8();
+        let expected = tonemap::tone_map(&image, map);
+        let worst = shown.iter().zip(expected.as_flattened()).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(worst <= Some(1), "{name}: device and host are {worst:?} levels apart");
+    }
+}
+
+#[test]
+fn a_sequence_is_a_file_a_frame() {
+    let folder = folder("sequence");
+    let quiet = succeed(&[
+        "render",
+        any_scene(),
+        "-q",
+        "-o",
+        text(&folder.join("a.png")),
+        "--size",
+        "16x16",
+        "--frames",
+        "3..5",
+    ]);
+    assert!(quiet.stderr.is_empty(), "{}", stderr(&quiet));
+    succeed(&["render", any_scene(), "-o", text(&folder.join("b##.exr")), "--size", "16x16", "--frame", "7"]);
+    assert_eq!(names_in(&folder), ["a.0003.png", "a.0004.png", "a.0005.png", "b07.exr"]);
+}
+
+#[test]
+fn a_scene_without_light_says_so_once_and_is_rendered() {
+    let folder = folder("unlit");
+    let scene = write_unlit_scene(&folder);
+    let image = folder.join("a.exr");
+    let output = succeed(&["render", text(&scene), "-o", text(&image), "--size", "16x16", "--frames", "0..2"]);
+    let message = stderr(&output);
+    assert_eq!(message.matches("has no light").count(), 1, "{message}");
+    assert!(message.contains("--light") && message.contains("--sky"), "{message}");
+    assert!(folder.join("a.0002.exr").exists());
+    let lit = succeed(&["render", text(&scene), "-o", text(&image), "--size", "16x16", "--sky", "1,1,1"]);
+    assert!(!stderr(&lit).contains("has no light"), "{}", stderr(&lit));
+}
+
+#[test]
+fn the_graph_names_the_passes() {
+    let folder = folder("graph");
+    let dot = folder.join("a.dot");
+    let output = succeed(&["graph", any_scene(), "--size", "48x32", "--dot", text(&dot)]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("gbuffer"));
+    assert!(fs::read_to_string(&dot).expect("written").starts_with("digraph"));
+}
+
+#[test]
+fn a_failing_scene_does_not_stop_the_bench() {
+    let folder = folder("bench");
+    let (json, csv, md, images) =
+        (folder.join("a.json"), folder.join("a.csv"), folder.join("a.md"), folder.join("images"));
+    let scenes = [any_scene(), "no-such-scene"];
+    let measured = ["--technique", "all", "--frames", "2", "--warmup", "1", "--size", "48x32"];
+    let files = ["--json", text(&json), "--csv", text(&csv), "--md", text(&md), "--images", text(&images)];
+    let output = irradia(&[&["bench"], &scenes[..], &measured, &files].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).lines().any(|line| line.starts_with("irradia: no-such-scene")), "{}", stderr(&output));
+    let tables = String::from_utf8_lossy(&output.stdout);
+    assert!(tables.contains("unexplained") && tables.contains("RSM (DEFAULT)"), "{tables}");
+
+    let report: Report = serde_json::from_str(&fs::read_to_string(&json).expect("written")).expect("the schema");
+    assert_eq!(report.schema, "irradia-bench/1");
+    assert!(!report.device.name.is_empty());
+    assert_eq!(report.failures.len(), 1);
+    let techniques: Vec<&str> = report.runs.iter().map(|run| run.technique.as_str()).collect();
+    assert_eq!(techniques, ["direct", "rsm"]);
+    for run in &report.runs {
+        assert_eq!((run.frames, run.size), (2, [48, 32]));
+        assert!(
+            run.frame_ms.min > 0.0
+                && run.frame_ms.min <= run.frame_ms.median
+                && run.frame_ms.median <= run.frame_ms.p95
+        );
+        assert!(run.passes.iter().any(|pass| pass.skipped.is_none() && pass.ms.median > 0.0));
+        assert!(run.memory_bytes > 0 && run.memory_bytes == run.memory.values().sum::<u64>());
+    }
+    assert!(fs::read_to_string(&csv).expect("written").starts_with("scene,technique"));
+    assert!(fs::read_to_string(&md).expect("written").contains("| pass |"));
+    let pictures = report.runs.iter().map(|run| format!("{}-{}-default.png", run.scene, run.technique));
+    assert_eq!(names_in(&images), pictures.collect::<Vec<_>>());
+}
