@@ -13,4 +13,4 @@ pub mod statistics;
 pub mod tables;
 mod units;
 
-pub use run::{Finished, Options, Subject, run};
+pub use run::{Finished, Options, PICTURE_TONE_MAP, Subject, run};

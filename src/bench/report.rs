@@ -37,6 +37,12 @@ impl Report {
             failures: Vec::new(),
         }
     }
+
+    /// What ran on what: `irradia 0.1.0 on NAME (discrete, DRIVER, Vulkan 1.3.275)`.
+    pub fn heading(&self) -> String {
+        let Device { name, kind, driver, api } = &self.device;
+        format!("irradia {} on {name} ({kind}, {driver}, Vulkan {api})", self.irradia)
+    }
 }
 
 /// The device that a report's runs were made on.
@@ -181,18 +187,24 @@ pub struct ImageErrors {
 pub struct Failure {
     /// The scene.
     pub scene: String,
-    /// The technique and preset; null if the scene itself failed.
+    /// The technique; null if the scene itself failed.
     pub technique: Option<String>,
+    /// The preset; null if the scene itself failed.
+    pub preset: Option<String>,
     /// One sentence.
     pub error: String,
 }
 
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.technique {
-            Some(technique) => write!(f, "{} with {technique}: {}", self.scene, self.error),
-            None => write!(f, "{}: {}", self.scene, self.error),
+        write!(f, "{}", self.scene)?;
+        if let Some(technique) = &self.technique {
+            write!(f, " with {technique}")?;
         }
+        if let Some(preset) = &self.preset {
+            write!(f, " ({preset})")?;
+        }
+        write!(f, ": {}", self.error)
     }
 }
 
@@ -243,16 +255,21 @@ mod tests {
         let errors = BTreeMap::from([("image".to_owned(), ImageErrors { rmse: 0.1, ..ImageErrors::default() })]);
         let reference = Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1) };
         report.runs.push(Run { reference: Some(reference), error: Some(errors), ..example_run() });
-        report.failures.push(Failure { scene: "a".to_owned(), technique: None, error: "no such scene".to_owned() });
+        report.failures.push(Failure {
+            scene: "a".to_owned(),
+            error: "no such scene".to_owned(),
+            ..Failure::default()
+        });
         let text = serde_json::to_string_pretty(&report).expect("plain data");
         assert_eq!(serde_json::from_str::<Report>(&text).expect("its own"), report);
     }
 
     #[test]
     fn failures_are_sentences() {
-        let mut failure = Failure { scene: "ring".to_owned(), technique: None, error: "no such file".to_owned() };
+        let mut failure = Failure { scene: "ring".to_owned(), error: "no such file".to_owned(), ..Failure::default() };
         assert_eq!(failure.to_string(), "ring: no such file");
-        failure.technique = Some("rsm (draft)".to_owned());
+        failure.technique = Some("rsm".to_owned());
+        failure.preset = Some("draft".to_owned());
         assert_eq!(failure.to_string(), "ring with rsm (draft): no such file");
     }
 }

@@ -5,6 +5,9 @@ use super::samples::Samples;
 use crate::renderer::{Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
 use crate::scene::{CameraView, Scene};
 
+/// How the contenders' pictures are tone-mapped.
+pub const PICTURE_TONE_MAP: ToneMap = ToneMap::Aces;
+
 /// The scene that the contenders render.
 #[derive(Debug)]
 pub struct Subject<'a> {
@@ -103,14 +106,16 @@ impl Contender {
 
     fn finish(self, subject: &Subject<'_>, options: &Options) -> Outcome {
         let settings = &self.settings;
-        let failure = |error: String| {
-            let technique = Some(format!("{} ({})", settings.technique.name(), settings.preset.name()));
-            Failure { scene: subject.name.to_owned(), technique, error }
+        let failure = |error: String| Failure {
+            scene: subject.name.to_owned(),
+            technique: Some(settings.technique.name().to_owned()),
+            preset: Some(settings.preset.name().to_owned()),
+            error,
         };
         let (mut renderer, samples) = self.state.map_err(failure)?;
         let picture = if options.pictures {
             let request = FrameRequest {
-                tonemap: Some(ToneMap::default()),
+                tonemap: Some(PICTURE_TONE_MAP),
                 read_back: true,
                 ..request(subject, options, Timing::Frame)
             };

@@ -1,8 +1,10 @@
 //! What a picture's file says of how it was made.
 
 use irradia::output::Attributes;
-use irradia::renderer::{DeviceReport, Settings, Slot};
+use irradia::renderer::{DeviceReport, Settings, Slot, ToneMap};
 use serde_json::{Map, Value};
+
+use super::values;
 
 /// The picture that the attributes describe.
 pub(crate) struct Picture<'a> {
@@ -12,6 +14,8 @@ pub(crate) struct Picture<'a> {
     pub(crate) size: [u32; 2],
     pub(crate) settings: &'a Settings,
     pub(crate) device: &'a DeviceReport,
+    /// How its pixels were made; `None` for radiance.
+    pub(crate) tonemap: Option<ToneMap>,
 }
 
 impl Picture<'_> {
@@ -35,6 +39,7 @@ impl Picture<'_> {
             ("driver", self.device.driver.clone()),
             ("api", self.device.api.clone()),
         ];
-        attributes.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        let tonemap = self.tonemap.map(|map| ("tonemap", values::tone_map_name(map).to_owned()));
+        attributes.into_iter().chain(tonemap).map(|(name, value)| (name.to_owned(), value)).collect()
     }
 }

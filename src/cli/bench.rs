@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use irradia::bench::report::{Failure, Report, Run};
-use irradia::bench::{Finished, Options, Subject, rows, run as measure, tables};
+use irradia::bench::{Finished, Options, PICTURE_TONE_MAP, Subject, run as measure, tables};
 use irradia::output::{self, AtomicFile};
 use irradia::renderer::{Context, Preset, Settings, Technique};
 
@@ -16,7 +16,7 @@ use super::method_args::OptionArgs;
 use super::scene_args::SceneArgs;
 use super::terminal::Progress;
 use super::values::{self, Choice};
-use super::{Session, files};
+use super::{Invocation, files};
 
 /// Measure techniques on scenes, pass by pass
 #[derive(Debug, Args)]
@@ -55,38 +55,33 @@ pub(crate) struct BenchArgs {
 }
 
 /// Runs all scenes, prints their tables, writes the reports. What fails is told at the end.
-pub(crate) fn run(args: &BenchArgs, session: &Session<'_>) -> Result<()> {
-    let bench = Bench::new(args, session)?;
+pub(crate) fn run(args: &BenchArgs, invocation: &Invocation<'_>) -> Result<()> {
+    let bench = Bench::new(args, invocation)?;
     let mut report = Report::new(&bench.context.device());
-    let device = &report.device;
-    let heading = format!(
-        "irradia {} on {} ({}, {}, Vulkan {})\n\n",
-        report.irradia, device.name, device.kind, device.driver, device.api
-    );
-    session.terminal.print(&heading)?;
+    invocation.terminal.print(&format!("{}\n\n", report.heading()))?;
 
-    let progress = session.terminal.progress(bench.frames_per_scene() * args.scenes.len() as u64);
+    let progress = invocation.terminal.progress(bench.frames_per_scene() * args.scenes.len() as u64);
     for (index, spec) in args.scenes.iter().enumerate() {
         progress.about(spec);
         let (runs, failures) = match bench.scene(spec, &report.runs, &progress) {
             Ok(outcome) => outcome,
             Err(error) => {
-                (Vec::new(), vec![Failure { scene: spec.clone(), technique: None, error: format!("{error:#}") }])
+                (Vec::new(), vec![Failure { scene: spec.clone(), error: format!("{error:#}"), ..Failure::default() }])
             }
         };
         progress.at(bench.frames_per_scene() * (index as u64 + 1));
         if !runs.is_empty() {
-            session.terminal.print(&format!("{}\n", tables::scene_text(&runs.iter().collect::<Vec<_>>())))?;
+            invocation.terminal.print(&format!("{}\n", tables::scene_text(&runs.iter().collect::<Vec<_>>())))?;
         }
         report.runs.extend(runs);
         report.failures.extend(failures);
     }
     drop(progress);
     if report.runs.len() > 1 {
-        session.terminal.print(&tables::summary_text(&report.runs))?;
+        invocation.terminal.print(&tables::summary_text(&report.runs))?;
     }
     write_reports(args, &report)?;
-    session.check_validation(&bench.context)?;
+    invocation.check_validation(&bench.context)?;
     match report.failures.as_slice() {
         [] => Ok(()),
         [failure] => bail!("{failure}"),
@@ -104,7 +99,7 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     /// Finds out what can go wrong before the first frame: devices, and files that could not be written.
-    fn new<'a>(args: &'a BenchArgs, session: &Session<'_>) -> Result<Bench<'a>> {
+    fn new<'a>(args: &'a BenchArgs, invocation: &Invocation<'_>) -> Result<Bench<'a>> {
         for path in [&args.json, &args.csv, &args.md].into_iter().flatten() {
             output::check_target(path)?;
         }
@@ -119,7 +114,7 @@ impl Bench<'_> {
         }
         let pictures = args.images.is_some();
         let options = Options { size: args.scene_args.size, frames: args.frames, warmup: args.warmup, pictures };
-        Ok(Bench { args, context: session.context()?, contenders, options })
+        Ok(Bench { args, context: invocation.context()?, contenders, options })
     }
 
     fn frames_per_scene(&self) -> u64 {
@@ -140,8 +135,14 @@ impl Bench<'_> {
             match outcome {
                 Ok(finished) => {
                     if let Err(error) = self.write_picture(&finished, settings) {
-                        let technique = Some(rows::contender(&finished.run));
-                        failures.push(Failure { scene: name.to_owned(), technique, error: format!("{error:#}") });
+                        let (technique, preset) =
+                            (Some(finished.run.technique.clone()), Some(finished.run.preset.clone()));
+                        failures.push(Failure {
+                            scene: name.to_owned(),
+                            technique,
+                            preset,
+                            error: format!("{error:#}"),
+                        });
                     }
                     runs.push(finished.run);
                 }
@@ -156,8 +157,15 @@ impl Bench<'_> {
         let run = &finished.run;
         let path = folder.join(files::from_words(&[&run.scene, &run.technique, &run.preset]) + ".png");
         let device = self.context.device();
-        let picture =
-            Picture { scene: &run.scene, camera: &run.camera, frame: 0, size: run.size, settings, device: &device };
+        let picture = Picture {
+            scene: &run.scene,
+            camera: &run.camera,
+            frame: 0,
+            size: run.size,
+            settings,
+            device: &device,
+            tonemap: Some(PICTURE_TONE_MAP),
+        };
         Ok(output::write_png(&path, run.size, pixels, &picture.attributes())?)
     }
 }

@@ -4,21 +4,21 @@ use anyhow::{Result, bail};
 use clap::Args;
 use irradia::renderer::{Context, DeviceReport};
 
-use super::Session;
+use super::Invocation;
 
 /// List the Vulkan devices; the default is marked with a star
 #[derive(Debug, Args)]
 pub(crate) struct DevicesArgs {}
 
 /// A paragraph a device. That there is none is a failure, for nothing else would work.
-pub(crate) fn run(_: &DevicesArgs, session: &Session<'_>) -> Result<()> {
+pub(crate) fn run(_: &DevicesArgs, invocation: &Invocation<'_>) -> Result<()> {
     let devices = Context::devices()?;
     if devices.is_empty() {
         bail!(
             "there is no Vulkan device; install a driver, such as mesa-vulkan-drivers, which also has one for the CPU"
         );
     }
-    session.terminal.print(&devices.iter().map(paragraph).collect::<String>())
+    invocation.terminal.print(&devices.iter().map(paragraph).collect::<String>())
 }
 
 fn paragraph(device: &DeviceReport) -> String {

@@ -8,7 +8,7 @@ use clap::Args;
 use irradia::output::AtomicFile;
 use irradia::renderer::{FrameRequest, Renderer, Timing};
 
-use super::Session;
+use super::Invocation;
 use super::method_args::MethodArgs;
 use super::scene_args::SceneArgs;
 
@@ -27,10 +27,10 @@ pub(crate) struct GraphArgs {
 }
 
 /// Describes the frame that the bench would measure; nothing is rendered.
-pub(crate) fn run(args: &GraphArgs, session: &Session<'_>) -> Result<()> {
+pub(crate) fn run(args: &GraphArgs, invocation: &Invocation<'_>) -> Result<()> {
     let settings = args.methods.settings()?;
     let scene = args.scene_args.open(&args.scene)?.scene;
-    let context = session.context()?;
+    let context = invocation.context()?;
     let request = FrameRequest {
         size: args.scene_args.size,
         camera: args.scene_args.view(&scene)?,
@@ -44,6 +44,6 @@ pub(crate) fn run(args: &GraphArgs, session: &Session<'_>) -> Result<()> {
     if let Some(path) = &args.dot {
         AtomicFile::write_whole(path, |file| file.write_all(description.dot().as_bytes()))?;
     }
-    session.terminal.print(&description.text())?;
-    session.check_validation(&context)
+    invocation.terminal.print(&format!("{}\n", description.text().trim_end()))?;
+    invocation.check_validation(&context)
 }

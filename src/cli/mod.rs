@@ -85,13 +85,13 @@ pub(crate) fn main() -> ExitCode {
         (false, _) => Verbosity::Everything,
     };
     let terminal = Terminal::new(verbosity);
-    let session = Session { global: &cli.global, terminal: &terminal };
+    let invocation = Invocation { global: &cli.global, terminal: &terminal };
     let done = match &cli.command {
-        Command::Render(args) => render::run(args, &session),
-        Command::Bench(args) => bench::run(args, &session),
-        Command::Graph(args) => graph::run(args, &session),
-        Command::Scenes(args) => scenes::run(args, &session),
-        Command::Devices(args) => devices::run(args, &session),
+        Command::Render(args) => render::run(args, &invocation),
+        Command::Bench(args) => bench::run(args, &invocation),
+        Command::Graph(args) => graph::run(args, &invocation),
+        Command::Scenes(args) => scenes::run(args, &invocation),
+        Command::Devices(args) => devices::run(args, &invocation),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -103,12 +103,12 @@ pub(crate) fn main() -> ExitCode {
 }
 
 /// What a subcommand has besides its own arguments.
-struct Session<'a> {
+struct Invocation<'a> {
     global: &'a GlobalArgs,
     terminal: &'a Terminal,
 }
 
-impl Session<'_> {
+impl Invocation<'_> {
     /// The device that the arguments choose.
     fn context(&self) -> anyhow::Result<Context> {
         let validation = match self.global.validation {

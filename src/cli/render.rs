@@ -1,18 +1,19 @@
 //! `irradia render`: frames of a scene to files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
 use irradia::output::{self, ImageFormat};
 use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
+use irradia::scene::CameraView;
 
 use super::attributes::Picture;
 use super::method_args::MethodArgs;
 use super::scene_args::SceneArgs;
 use super::values::{self, Choice, FrameRange, ImagePath};
-use super::{Session, files, wrong_usage};
+use super::{Invocation, files, wrong_usage};
 
 /// Render frames of a scene to EXR or PNG files
 #[derive(Debug, Args)]
@@ -48,7 +49,7 @@ struct Spent {
 }
 
 /// Renders every frame asked for and says what was written.
-pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
+pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> {
     let format = args.output.format;
     if format == ImageFormat::Png && !args.slots.is_empty() {
         wrong_usage("render", "a PNG holds the image alone; write an .exr to get its --slots");
@@ -61,12 +62,12 @@ pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
     let settings = args.methods.settings()?;
     let loaded = args.scene_args.open(&args.scene)?;
     let mut scene = loaded.scene;
-    let context = session.context()?;
+    let context = invocation.context()?;
     let mut renderer = Renderer::new(&context, settings)?;
     let device = context.device();
 
     let FrameRange { first, last } = args.frames.unwrap_or(FrameRange { first: args.frame, last: args.frame });
-    let progress = (first < last).then(|| session.terminal.progress(u64::from(last - first) + 1));
+    let progress = (first < last).then(|| invocation.terminal.progress(u64::from(last - first) + 1));
     let mut spent = Spent::default();
     for number in first..=last {
         scene.set_frame(number);
@@ -83,9 +84,10 @@ pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
             size: frame.size,
             settings: renderer.settings(),
             device: &device,
+            tonemap: request.tonemap,
         };
         let writing = Instant::now();
-        write(&path_of(args, number), format, &frame, &picture, request.tonemap)?;
+        write(&path_of(args, number), format, &frame, &picture)?;
         spent.write += writing.elapsed().as_secs_f64();
         if let Some(progress) = &progress {
             progress.step();
@@ -93,17 +95,17 @@ pub(crate) fn run(args: &RenderArgs, session: &Session<'_>) -> Result<()> {
     }
     drop(progress);
     let (names, [width, height]) = (written_names(args, first, last), args.scene_args.size);
-    session.terminal.say(&format!(
+    invocation.terminal.say(&format!(
         "wrote {names} ({width}x{height}) in {:.2} s: scene {:.2} s, rendering {:.2} s, writing {:.2} s",
         start.elapsed().as_secs_f64(),
         1e-3 * loaded.load_ms,
         spent.render,
         spent.write,
     ));
-    session.check_validation(&context)
+    invocation.check_validation(&context)
 }
 
-fn request(args: &RenderArgs, camera: irradia::scene::CameraView) -> FrameRequest {
+fn request(args: &RenderArgs, camera: CameraView) -> FrameRequest {
     let png = args.output.format == ImageFormat::Png;
     FrameRequest {
         size: args.scene_args.size,
@@ -116,7 +118,7 @@ fn request(args: &RenderArgs, camera: irradia::scene::CameraView) -> FrameReques
     }
 }
 
-fn path_of(args: &RenderArgs, frame: u32) -> std::path::PathBuf {
+fn path_of(args: &RenderArgs, frame: u32) -> PathBuf {
     let path = &args.output.path;
     if args.frames.is_some() { files::numbered(path, frame) } else { files::single(path, frame) }
 }
@@ -126,14 +128,8 @@ fn written_names(args: &RenderArgs, first: u32, last: u32) -> String {
     if from == to { from.display().to_string() } else { format!("{} to {}", from.display(), to.display()) }
 }
 
-fn write(
-    path: &Path,
-    format: ImageFormat,
-    frame: &Frame,
-    picture: &Picture<'_>,
-    tonemap: Option<ToneMap>,
-) -> Result<()> {
-    let mut attributes = picture.attributes();
+fn write(path: &Path, format: ImageFormat, frame: &Frame, picture: &Picture<'_>) -> Result<()> {
+    let attributes = picture.attributes();
     match format {
         ImageFormat::Exr => {
             let image = frame.image.as_ref().context("the renderer gave back no image")?;
@@ -141,7 +137,6 @@ fn write(
         }
         ImageFormat::Png => {
             let display = frame.display.as_ref().context("the renderer gave back no display values")?;
-            attributes.extend(tonemap.map(|map| ("tonemap".to_owned(), values::tone_map_name(map).to_owned())));
             output::write_png(path, frame.size, display, &attributes)?;
         }
     }

@@ -4,14 +4,14 @@ use anyhow::Result;
 use clap::Args;
 use irradia::scene::{Scene, builtin_names};
 
-use super::Session;
+use super::Invocation;
 
 /// List the built-in scenes
 #[derive(Debug, Args)]
 pub(crate) struct ScenesArgs {}
 
 /// One line a scene: name, size, lights, what it tests.
-pub(crate) fn run(_: &ScenesArgs, session: &Session<'_>) -> Result<()> {
+pub(crate) fn run(_: &ScenesArgs, invocation: &Invocation<'_>) -> Result<()> {
     let names = builtin_names();
     let width = names.iter().map(|name| name.len()).max().unwrap_or_default();
     let mut text = format!("{:width$}  triangles  lights  what it tests\n", "scene");
@@ -22,5 +22,5 @@ pub(crate) fn run(_: &ScenesArgs, session: &Session<'_>) -> Result<()> {
         let description = scene.description.as_deref().unwrap_or_default();
         text += &format!("{name:width$}  {triangles:>9}  {lights:>6}  {description}\n");
     }
-    session.terminal.print(&text)
+    invocation.terminal.print(&text)
 }

@@ -189,3 +189,42 @@ impl Visit for Sentence {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[derive(Clone, Default)]
+    struct Captured(Arc<Mutex<Vec<u8>>>);
+
+    impl Write for Captured {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.lock().expect("no test panics while writing").write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_warning_comes_once() {
+        let captured = Captured::default();
+        let writer = captured.clone();
+        let subscriber =
+            tracing_subscriber::fmt().event_format(Sentences::default()).with_writer(move || writer.clone()).finish();
+        tracing::subscriber::with_default(subscriber, || {
+            for name in ["a", "a", "b"] {
+                tracing::warn!("{name} has no light");
+                tracing::info!(triangles = 3, "loaded {name}");
+            }
+        });
+        let bytes = captured.0.lock().expect("no test panics while writing").clone();
+        let expected = "irradia: warning: a has no light\nirradia: info: loaded a, triangles = 3\n\
+                        irradia: info: loaded a, triangles = 3\n\
+                        irradia: warning: b has no light\nirradia: info: loaded b, triangles = 3\n";
+        assert_eq!(String::from_utf8(bytes).expect("text"), expected);
+    }
+}

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    ReadChannels, ReadLayers, SmallVec, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    LineOrder, ReadChannels, ReadLayers, SmallVec, Text, Vec2, WritableImage,
 };
 
 use super::{AtomicFile, Attributes, OutputError};
@@ -54,11 +54,14 @@ pub fn write_exr(
     let channels = layers.iter().flat_map(|(prefix, layer)| {
         ["R", "G", "B"].into_iter().enumerate().map(move |(index, channel)| {
             let samples = layer.pixels.iter().map(|pixel| pixel[index]).collect();
-            AnyChannel::new(text(&format!("{prefix}{channel}")), FlatSamples::F32(samples))
+            let name = text(&format!("{prefix}{channel}"));
+            AnyChannel { name, sample_data: FlatSamples::F32(samples), quantize_linearly: false, sampling: Vec2(1, 1) }
         })
     });
     let size = Vec2(image.size[0] as usize, image.size[1] as usize);
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::default() };
+    // Scan lines from the top, which every reader knows, tiles not being known to all.
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let layer =
         Layer::new(size, LayerAttributes::default(), encoding, AnyChannels::sort(channels.collect::<SmallVec<_>>()));
     let mut document = Image::from_layer(layer);
@@ -163,6 +166,10 @@ mod tests {
         assert_eq!(names, expected);
         assert!(header.channels.list.iter().all(|channel| channel.sample_type == ::exr::prelude::SampleType::F32));
         assert_eq!(header.compression, Compression::ZIP16);
+        assert_eq!(
+            (header.blocks, header.line_order),
+            (::exr::meta::BlockDescription::ScanLines, LineOrder::Increasing)
+        );
         assert_eq!(header.shared_attributes.chromaticities, Some(REC_709));
     }
 

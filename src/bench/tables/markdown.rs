@@ -9,14 +9,7 @@ use crate::bench::rows::{self, HEADER};
 /// The whole report.
 pub fn markdown(report: &Report) -> String {
     let mut out = String::new();
-    let device = &report.device;
-    line(
-        &mut out,
-        &format!(
-            "irradia {} on {} ({}, {}, Vulkan {})",
-            report.irradia, device.name, device.kind, device.driver, device.api
-        ),
-    );
+    line(&mut out, &report.heading());
     line(&mut out, "");
     table(&mut out, &SUMMARY_HEADER, 2..7, report.runs.iter().map(|run| summary_cells(run).to_vec()));
     for runs in by_scene(&report.runs) {
@@ -67,7 +60,11 @@ mod tests {
     fn every_table_is_sound() {
         let mut report = Report::new(&DeviceReport::default());
         report.runs = vec![example_run(), Run { scene: "a|b".to_owned(), ..example_run() }];
-        report.failures.push(Failure { scene: "ring".to_owned(), technique: None, error: "no such file".to_owned() });
+        report.failures.push(Failure {
+            scene: "ring".to_owned(),
+            error: "no such file".to_owned(),
+            ..Failure::default()
+        });
         let text = markdown(&report);
         let mut columns = None;
         for line in text.lines() {
