@@ -52,15 +52,16 @@ pub(super) fn find(scene: &Scene) -> CameraView {
         .iter()
         .map(|&(towards_eye, up)| outside(&bounds, radius, towards_eye, up))
         .collect();
-    let fronts: Vec<f64> = candidates
-        .par_iter()
-        .map(|view| share_of_fronts(&triangles, view, bounds.center(), radius))
-        .collect();
-    let first = fronts.iter().position(|&share| share >= ENOUGH_FRONTS);
-    let mut view = match first {
-        Some(index) => candidates[index].clone(),
-        None => inside(&bounds, radius),
+    let suits = |view: &&CameraView| {
+        share_of_fronts(&triangles, view, bounds.center(), radius) >= ENOUGH_FRONTS
     };
+    // Most objects suit the first view; only otherwise are the rest worth drawing.
+    let (first, rest) = candidates.split_at(1);
+    let suited = first
+        .iter()
+        .find(suits)
+        .or_else(|| rest.par_iter().find_first(suits));
+    let mut view = suited.cloned().unwrap_or_else(|| inside(&bounds, radius));
     view.name = "automatic".to_owned();
     view.automatic = true;
     view
@@ -175,14 +176,16 @@ fn share_of_fronts(triangles: &[Triangle], view: &CameraView, center: DVec3, rad
                 *pixel = (inverse_depth, front);
             }
         };
+        // The pixels whose centres lie between two coordinates. Truncation is cheaper than rounding, and this runs for every
+        // triangle of the scene.
         let range = |low: f32, high: f32| {
-            (low.ceil().max(0.0) as usize)
-                ..=(high.floor().min(SIZE as f32 - 1.0).max(-1.0) + 1.0) as usize
+            let [first, end] = [low, high].map(|at| (at + 0.5).clamp(0.0, SIZE as f32) as usize);
+            first..end
         };
-        let columns = range(a.x.min(b.x).min(c.x) - 0.5, a.x.max(b.x).max(c.x) - 0.5);
-        let rows = range(a.y.min(b.y).min(c.y) - 0.5, a.y.max(b.y).max(c.y) - 0.5);
-        for y in rows.filter(|&y| y < SIZE) {
-            for x in columns.clone().filter(|&x| x < SIZE) {
+        let columns = range(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
+        let rows = range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+        for y in rows {
+            for x in columns.clone() {
                 let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
                 let weight_b = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
                 let weight_c = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;

@@ -40,6 +40,28 @@ impl Primitive {
         self.indices.len() / 3
     }
 
+    /// Bytes that its arrays occupy.
+    pub fn bytes(&self) -> usize {
+        let texcoords = self.texcoords.iter().flatten();
+        size_of_val(&self.positions[..])
+            + self
+                .normals
+                .as_ref()
+                .map_or(0, |values| size_of_val(&values[..]))
+            + self
+                .tangents
+                .as_ref()
+                .map_or(0, |values| size_of_val(&values[..]))
+            + texcoords
+                .map(|values| size_of_val(&values[..]))
+                .sum::<usize>()
+            + self
+                .colors
+                .as_ref()
+                .map_or(0, |values| size_of_val(&values[..]))
+            + size_of_val(&self.indices[..])
+    }
+
     /// The corner positions of every triangle, in index order.
     pub fn triangles(&self) -> impl Iterator<Item = [[f32; 3]; 3]> {
         self.indices

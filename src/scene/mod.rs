@@ -7,6 +7,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `world` | the [`Scene`]: nodes, transforms, instances, revisions |
+//! | `editing` | adding things to it and changing them |
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
@@ -20,6 +21,7 @@ mod animation;
 mod auto_view;
 mod builtin;
 mod camera;
+mod editing;
 mod emitters;
 mod error;
 mod facts;

@@ -5,10 +5,13 @@ use super::container::Storage;
 use super::document::{self, Document, get};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Unpacked bytes may be at most this many times the bytes that were read from disk …
-const UNPACK_RATIO: u64 = 16;
-/// … plus this, so that tiny files with sparse accessors have room.
-const UNPACK_ALLOWANCE: u64 = 16 << 20;
+/// Bytes that may be kept for each byte that was read from disk.
+const KEEP_RATIO: u64 = 16;
+/// Bytes that may be unpacked for each byte read. More than are kept, since many primitives may share one large vertex array
+/// of which each uses, and keeps, a small part.
+const UNPACK_RATIO: u64 = 256;
+/// Both may be exceeded by this much, so that tiny files with sparse accessors have room.
+const ALLOWANCE: u64 = 16 << 20;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Component {
@@ -69,6 +72,7 @@ pub(super) struct Accessors<'a> {
     document: &'a Document,
     storage: &'a Storage<'a>,
     unpacked: AtomicU64,
+    kept: AtomicU64,
 }
 
 impl<'a> Accessors<'a> {
@@ -77,6 +81,7 @@ impl<'a> Accessors<'a> {
             document,
             storage,
             unpacked: AtomicU64::new(0),
+            kept: AtomicU64::new(0),
         }
     }
 
@@ -250,20 +255,28 @@ impl<'a> Accessors<'a> {
         })
     }
 
-    /// Accounts for an allocation before it is made; refuses what the file cannot justify.
+    /// Accounts for unpacking an accessor, before it is done.
     fn charge(&self, index: usize, bytes: u64) -> Result<(), String> {
-        let limit = self
-            .storage
-            .total_bytes
-            .saturating_mul(UNPACK_RATIO)
-            .saturating_add(UNPACK_ALLOWANCE);
-        let before = self
-            .unpacked
-            .fetch_add(bytes.min(limit.saturating_add(1)), Ordering::Relaxed);
+        self.spend(&self.unpacked, UNPACK_RATIO, bytes)
+            .map_err(|limit| {
+                format!("accessor {index} brings the data to unpack to more than {limit}")
+            })
+    }
+
+    /// Accounts for data that stays in the scene.
+    pub(super) fn keep(&self, bytes: usize) -> Result<(), String> {
+        self.spend(&self.kept, KEEP_RATIO, bytes as u64)
+            .map_err(|limit| format!("it brings the scene's data to more than {limit}"))
+    }
+
+    fn spend(&self, spent: &AtomicU64, ratio: u64, bytes: u64) -> Result<(), String> {
+        let file_bytes = self.storage.total_bytes;
+        let limit = file_bytes.saturating_mul(ratio).saturating_add(ALLOWANCE);
+        // What is refused counts too, as far as it cannot overflow: the file is not loaded anyway.
+        let before = spent.fetch_add(bytes.min(limit), Ordering::Relaxed);
         if before.saturating_add(bytes) > limit {
             return Err(format!(
-                "accessor {index} brings the unpacked data to more than {UNPACK_RATIO} times the file's {} bytes; such a file is not loaded",
-                self.storage.total_bytes
+                "{ratio} times the file's {file_bytes} bytes; such a file is not loaded"
             ));
         }
         Ok(())

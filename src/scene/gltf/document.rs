@@ -5,7 +5,7 @@
 //! an [`Element`], whose fault is reported when, and only when, something asks for it. And vendor extensions change
 //! properties that the core calls required (`KHR_animation_pointer` has targets without a node).
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
@@ -105,14 +105,14 @@ pub(super) struct Node {
     pub(super) name: Option<String>,
     #[serde(default)]
     pub(super) children: Vec<usize>,
-    pub(super) matrix: Option<[f64; 16]>,
+    /// Boxed, since few nodes have one and files may have millions of nodes.
+    pub(super) matrix: Option<Box<[f64; 16]>>,
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
     pub(super) mesh: Option<usize>,
     pub(super) camera: Option<usize>,
-    #[serde(default)]
-    pub(super) skin: Value,
+    pub(super) skin: Option<IgnoredAny>,
     #[serde(default)]
     extensions: Value,
 }

@@ -5,7 +5,7 @@ use super::document::{self, get};
 use crate::scene::{Texture, TextureId, Wrap};
 use image::{ImageReader, Limits};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -98,12 +98,9 @@ impl<'a> Loader<'a> {
             .requests
             .iter()
             .for_each(|(key, _)| *uses.entry(key.source).or_default() += 1);
-        let mut sources: Vec<Source> = Vec::new();
-        for (key, _) in &requests.requests {
-            if !sources.contains(&key.source) {
-                sources.push(key.source);
-            }
-        }
+        let mut seen = HashSet::new();
+        let keys = requests.requests.iter().map(|(key, _)| key.source);
+        let sources: Vec<Source> = keys.filter(|source| seen.insert(*source)).collect();
         let total = AtomicU64::new(0);
         let decoded = sources.par_iter().map(|&source| {
             let what = match source {

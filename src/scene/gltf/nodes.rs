@@ -1,12 +1,14 @@
 //! The active scene's nodes with their transforms, lights, cameras and animations.
 
 use super::Loader;
+use super::accessor::Integers;
 use super::document::{self, get};
 use crate::scene::animation::{Animation, Channel, Interpolation, Pose, Property, unit_quaternion};
 use crate::scene::{Camera, CameraId, Light, LightId, LightKind, MeshId, Node, NodeId, Projection};
 use glam::{DAffine3, DMat4, DVec3};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::PI;
 
 /// A node of the active scene; `parent` is its place in the list of branches, which has parents before children.
 pub(super) struct Branch<'a> {
@@ -58,7 +60,7 @@ impl<'a> Loader<'a> {
             }
             let nodes = (0..document.nodes.len())
                 .filter_map(|index| get(&document.nodes, index, "node").ok());
-            let children: std::collections::HashSet<usize> = nodes
+            let children: HashSet<usize> = nodes
                 .flat_map(|node| node.children.iter().copied())
                 .collect();
             return Ok((0..document.nodes.len())
@@ -80,7 +82,7 @@ impl<'a> Loader<'a> {
         let mut skinned = 0;
         for branch in tree {
             let node = branch.node;
-            skinned += usize::from(node.mesh.is_some() && !node.skin.is_null());
+            skinned += usize::from(node.mesh.is_some() && node.skin.is_some());
             let placed = Node {
                 name: node.name.clone().unwrap_or_default(),
                 parent: branch.parent.map(|parent| ids[parent]),
@@ -214,11 +216,11 @@ impl<'a> Loader<'a> {
         let times = self.accessors.scalars(sampler.input)?;
         let values: Vec<[f32; 4]> = if property == Property::Rotation {
             self.accessors
-                .vectors::<4>(sampler.output, super::accessor::Integers::Normalized)?
+                .vectors::<4>(sampler.output, Integers::Normalized)?
         } else {
             let vectors = self
                 .accessors
-                .vectors::<3>(sampler.output, super::accessor::Integers::Normalized)?;
+                .vectors::<3>(sampler.output, Integers::Normalized)?;
             vectors
                 .into_iter()
                 .map(|[x, y, z]| [x, y, z, 0.0])
@@ -261,12 +263,10 @@ fn pose(node: &document::Node) -> Option<Pose> {
 }
 
 fn local_transform(node: &document::Node) -> DAffine3 {
-    let matrix = || {
-        DAffine3::from_mat4(DMat4::from_cols_array(
-            &node.matrix.unwrap_or(DMat4::IDENTITY.to_cols_array()),
-        ))
-    };
-    pose(node).map_or_else(matrix, |pose| pose.transform())
+    match (&node.matrix, pose(node)) {
+        (Some(matrix), _) => DAffine3::from_mat4(DMat4::from_cols_array(matrix)),
+        (None, pose) => pose.map_or(DAffine3::IDENTITY, |pose| pose.transform()),
+    }
 }
 
 fn convert_light(light: &document::Light) -> Result<Light, String> {
@@ -301,9 +301,7 @@ fn convert_projection(camera: &document::Camera) -> Option<Projection> {
     match camera.kind.as_str() {
         "perspective" => {
             let perspective = camera.perspective.as_ref()?;
-            let valid = perspective.yfov > 0.0
-                && perspective.yfov < std::f64::consts::PI
-                && perspective.znear > 0.0;
+            let valid = perspective.yfov > 0.0 && perspective.yfov < PI && perspective.znear > 0.0;
             valid.then_some(Projection::Perspective {
                 vertical_fov: perspective.yfov,
                 aspect: perspective.aspect_ratio.filter(|&aspect| aspect > 0.0),

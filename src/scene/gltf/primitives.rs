@@ -188,6 +188,7 @@ impl Loader<'_> {
             return Err(fault.into());
         }
         drop_unused_vertices(&mut result);
+        accessors.keep(result.bytes())?;
         if !result
             .positions
             .iter()

@@ -1,0 +1,582 @@
+//! Scenes built in memory: what changes are counted, what emissive surfaces come to, how lights are written.
+
+use glam::{DAffine3, DQuat, DVec3};
+use irradia::scene::{
+    Bounds, Camera, EmitterSample, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node,
+    NodeId, Primitive, Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef,
+    Wrap, parse_sky,
+};
+use std::f64::consts::PI;
+
+/// A unit square in the XY plane around the origin, facing +Z.
+fn square(material: MaterialId) -> Mesh {
+    let primitive = Primitive {
+        positions: vec![
+            [-0.5, -0.5, 0.0],
+            [0.5, -0.5, 0.0],
+            [0.5, 0.5, 0.0],
+            [-0.5, 0.5, 0.0],
+        ],
+        texcoords: [
+            Some(vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]),
+            None,
+        ],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        material,
+        ..Primitive::default()
+    };
+    Mesh {
+        name: "square".into(),
+        primitives: vec![primitive],
+    }
+}
+
+/// A scene with a matt square (node 0) and, half as large in each direction, a glowing one (node 1).
+fn two_squares(glow: Material) -> Scene {
+    let mut scene = Scene::empty("squares");
+    let matt = scene
+        .add_material(Material::default())
+        .expect("it is sound");
+    let glowing = scene.add_material(glow).expect("it is sound");
+    for (material, scale) in [(matt, 1.0), (glowing, 0.5)] {
+        let mesh = scene.add_mesh(square(material)).expect("it is sound");
+        let local = DAffine3::from_scale(DVec3::splat(scale));
+        scene
+            .add_node(Node {
+                mesh: Some(mesh),
+                local,
+                ..Node::default()
+            })
+            .expect("it is sound");
+    }
+    scene
+}
+
+fn glow() -> Material {
+    Material {
+        emissive: [1.0, 2.0, 4.0],
+        ..Material::default()
+    }
+}
+
+/// What of `before` a change has counted up.
+fn changed(before: Revisions, after: Revisions) -> [bool; 4] {
+    let pairs = [
+        (before.geometry, after.geometry),
+        (before.materials, after.materials),
+        (before.lights, after.lights),
+        (before.camera, after.camera),
+    ];
+    pairs.map(|(before, after)| before != after)
+}
+
+#[test]
+fn each_change_counts_up_what_it_changes() {
+    let mut scene = two_squares(glow());
+    let camera = Camera {
+        name: "eye".into(),
+        projection: Projection::Perspective {
+            vertical_fov: 1.0,
+            aspect: None,
+            near: 0.1,
+        },
+    };
+    let camera = scene.add_camera(camera);
+    let light = Light {
+        name: String::new(),
+        kind: LightKind::Point,
+        intensity: [1.0; 3],
+        range: None,
+    };
+    let light = scene.add_light(light).expect("it is sound");
+    let camera_node = scene
+        .add_node(Node {
+            camera: Some(camera),
+            ..Node::default()
+        })
+        .expect("it is sound");
+    let light_node = scene
+        .add_node(Node {
+            light: Some(light),
+            parent: Some(camera_node),
+            ..Node::default()
+        })
+        .expect("it is sound");
+    let moved = DAffine3::from_translation(DVec3::X);
+
+    type Change<'a> = (&'a str, Box<dyn Fn(&mut Scene)>, [bool; 4]);
+    let changes: Vec<Change> = vec![
+        (
+            "a matt object",
+            Box::new(move |scene| {
+                scene
+                    .set_local_transform(NodeId(0), moved)
+                    .expect("it exists")
+            }),
+            [true, false, false, false],
+        ),
+        (
+            "the same again",
+            Box::new(move |scene| {
+                scene
+                    .set_local_transform(NodeId(0), moved)
+                    .expect("it exists")
+            }),
+            [false; 4],
+        ),
+        (
+            "a glowing object",
+            Box::new(move |scene| {
+                scene
+                    .set_local_transform(NodeId(1), moved)
+                    .expect("it exists")
+            }),
+            [true, false, true, false],
+        ),
+        (
+            "a light",
+            Box::new(move |scene| {
+                scene
+                    .set_local_transform(light_node, moved)
+                    .expect("it exists")
+            }),
+            [false, false, true, false],
+        ),
+        (
+            "a camera with a light on it",
+            Box::new(move |scene| {
+                scene
+                    .set_local_transform(camera_node, moved)
+                    .expect("it exists")
+            }),
+            [false, false, true, true],
+        ),
+        (
+            "a colour",
+            Box::new(|scene| {
+                scene
+                    .set_material(
+                        MaterialId(0),
+                        Material {
+                            metallic: 1.0,
+                            ..Material::default()
+                        },
+                    )
+                    .expect("it exists")
+            }),
+            [false, true, false, false],
+        ),
+        (
+            "a glow",
+            Box::new(|scene| {
+                scene
+                    .set_material(MaterialId(1), Material::default())
+                    .expect("it exists")
+            }),
+            [false, true, true, false],
+        ),
+        (
+            "the sky",
+            Box::new(|scene| scene.set_sky([0.5; 3])),
+            [false, false, true, false],
+        ),
+        (
+            "the same sky",
+            Box::new(|scene| scene.set_sky([0.5; 3])),
+            [false; 4],
+        ),
+        (
+            "the same light",
+            Box::new(move |scene| {
+                let same = scene.lights()[light.0].clone();
+                scene.set_light(light, same).expect("it exists");
+            }),
+            [false; 4],
+        ),
+        (
+            "time without animation",
+            Box::new(|scene| scene.set_time(1.0)),
+            [false; 4],
+        ),
+    ];
+    for (what, change, expected) in changes {
+        let before = scene.revisions();
+        change(&mut scene);
+        assert_eq!(changed(before, scene.revisions()), expected, "{what}");
+    }
+    assert_eq!(scene.instances()[0].world, moved);
+    assert_eq!(
+        scene.world_transform(light_node).translation,
+        DVec3::X * 2.0
+    );
+}
+
+#[test]
+fn bounds_are_tight_and_follow_the_nodes() {
+    let mut scene = two_squares(Material::default());
+    let turned = DAffine3::from_rotation_translation(
+        DQuat::from_rotation_z(PI / 4.0),
+        DVec3::new(1e6, 0.0, 0.0),
+    );
+    scene.bounds();
+    scene
+        .set_local_transform(NodeId(0), turned)
+        .expect("it exists");
+    scene
+        .set_local_transform(NodeId(1), turned)
+        .expect("it exists");
+    let Bounds { min, max } = scene.bounds().expect("it has triangles");
+    let half_diagonal = 0.5f64.sqrt();
+    assert!(
+        (max - DVec3::new(1e6 + half_diagonal, half_diagonal, 0.0)).length() < 1e-9,
+        "{max}"
+    );
+    assert!(
+        (min - DVec3::new(1e6 - half_diagonal, -half_diagonal, 0.0)).length() < 1e-9,
+        "{min}"
+    );
+}
+
+#[test]
+fn what_contradicts_itself_is_not_taken() {
+    let mut scene = two_squares(glow());
+    let before = scene.revisions();
+    let broken = [
+        Primitive {
+            indices: vec![0, 1, 4],
+            ..square(MaterialId(0)).primitives[0].clone()
+        },
+        Primitive {
+            indices: vec![0, 1],
+            ..square(MaterialId(0)).primitives[0].clone()
+        },
+        Primitive {
+            normals: Some(vec![[0.0, 0.0, 1.0]]),
+            ..square(MaterialId(0)).primitives[0].clone()
+        },
+        Primitive {
+            positions: vec![[f32::INFINITY; 3]; 4],
+            ..square(MaterialId(0)).primitives[0].clone()
+        },
+        Primitive {
+            material: MaterialId(2),
+            ..square(MaterialId(0)).primitives[0].clone()
+        },
+    ];
+    for primitive in broken {
+        let error = scene.add_mesh(Mesh {
+            name: "broken".into(),
+            primitives: vec![primitive],
+        });
+        assert!(
+            matches!(
+                error,
+                Err(SceneError::InvalidObject { .. } | SceneError::UnknownId { .. })
+            ),
+            "{error:?}"
+        );
+    }
+    assert!(
+        scene
+            .add_node(Node {
+                parent: Some(NodeId(2)),
+                ..Node::default()
+            })
+            .is_err()
+    );
+    assert!(
+        scene
+            .set_local_transform(
+                NodeId(0),
+                DAffine3::from_translation(DVec3::splat(f64::NAN))
+            )
+            .is_err()
+    );
+    assert!(
+        scene
+            .set_local_transform(NodeId(2), DAffine3::IDENTITY)
+            .is_err()
+    );
+    assert!(
+        scene
+            .add_material(Material {
+                emissive: [f32::NAN; 3],
+                ..Material::default()
+            })
+            .is_err()
+    );
+    assert!(
+        scene
+            .add_material(Material {
+                base_color_texture: Some(TextureRef::new(TextureId(0))),
+                ..Material::default()
+            })
+            .is_err()
+    );
+    assert!(
+        scene
+            .add_light(Light {
+                name: String::new(),
+                kind: LightKind::Point,
+                intensity: [-1.0; 3],
+                range: None
+            })
+            .is_err()
+    );
+    assert_eq!(scene.revisions(), before);
+    assert_eq!(scene.instances().len(), 2);
+}
+
+fn total_power(samples: &[EmitterSample]) -> [f64; 3] {
+    std::array::from_fn(|channel| {
+        samples
+            .iter()
+            .map(|sample| f64::from(sample.power[channel]))
+            .sum()
+    })
+}
+
+#[track_caller]
+fn assert_close(actual: f64, expected: f64, relative: f64) {
+    assert!(
+        (actual - expected).abs() <= relative * expected.abs(),
+        "{actual} is not {expected}"
+    );
+}
+
+#[test]
+fn emitters_carry_the_power_of_the_surfaces() {
+    let area = 0.25;
+    for sides in [1.0, 2.0] {
+        let scene = two_squares(Material {
+            double_sided: sides == 2.0,
+            ..glow()
+        });
+        for count in [1, 2, 7, 64, 1000] {
+            let samples = scene.emitter_samples(count);
+            assert_eq!(samples.len(), count);
+            for (channel, radiance) in [1.0, 2.0, 4.0].into_iter().enumerate() {
+                assert_close(
+                    total_power(&samples)[channel],
+                    radiance * area * PI * sides,
+                    1e-6,
+                );
+            }
+            assert_close(samples.iter().map(|sample| sample.area).sum(), area, 1e-9);
+            assert!(
+                samples
+                    .iter()
+                    .all(|sample| sample.node == NodeId(1) && sample.two_sided == (sides == 2.0))
+            );
+        }
+    }
+    assert!(
+        two_squares(Material::default())
+            .emitter_samples(16)
+            .is_empty()
+    );
+    assert!(
+        two_squares(Material {
+            unlit: true,
+            ..glow()
+        })
+        .emitter_samples(16)
+        .is_empty()
+    );
+}
+
+#[test]
+fn emitters_cover_a_square_evenly() {
+    // Sixteen emitters on a square: every quarter of it holds four, and together they sit in its middle.
+    let samples = two_squares(glow()).emitter_samples(16);
+    for (right, top) in [(false, false), (false, true), (true, false), (true, true)] {
+        let quarter = samples
+            .iter()
+            .filter(|sample| (sample.position.x > 0.0) == right && (sample.position.y > 0.0) == top)
+            .count();
+        assert!(
+            (3..=5).contains(&quarter),
+            "{quarter} in the quarter {right} {top}"
+        );
+    }
+    let mean = samples.iter().map(|sample| sample.position).sum::<DVec3>() / 16.0;
+    assert!(mean.length() < 0.03, "{mean}");
+    for sample in &samples {
+        assert!(sample.position.abs().max_element() <= 0.25 && sample.position.z == 0.0);
+        assert_eq!(sample.normal, DVec3::Z);
+    }
+}
+
+#[test]
+fn emitters_share_themselves_out_by_power() {
+    // A second glowing square of four times the area gets four times the emitters.
+    let mut scene = two_squares(glow());
+    let mesh = scene.instances()[1].mesh;
+    let large = scene
+        .add_node(Node {
+            mesh: Some(mesh),
+            ..Node::default()
+        })
+        .expect("it is sound");
+    let samples = scene.emitter_samples(50);
+    assert_eq!(
+        samples.iter().filter(|sample| sample.node == large).count(),
+        40
+    );
+}
+
+#[test]
+fn emitters_move_with_the_scene() {
+    let mut scene = two_squares(glow());
+    let before = scene.emitter_samples(32);
+    let motion = DAffine3::from_scale_rotation_translation(
+        DVec3::splat(3.0),
+        DQuat::from_rotation_y(1.0),
+        DVec3::new(1e5, -7.0, 2.0),
+    );
+    for node in [0, 1] {
+        let local = motion * scene.nodes()[node].local;
+        scene
+            .set_local_transform(NodeId(node), local)
+            .expect("it exists");
+    }
+    for (before, after) in before.iter().zip(scene.emitter_samples(32)) {
+        assert!((motion.transform_point3(before.position) - after.position).length() < 1e-9);
+        assert!((motion.matrix3 * before.normal / 3.0 - after.normal).length() < 1e-9);
+        assert_close(after.area, before.area * 9.0, 1e-9);
+    }
+}
+
+#[test]
+fn mirrored_surfaces_still_emit_towards_their_front() {
+    let mut scene = two_squares(glow());
+    scene
+        .set_local_transform(NodeId(1), DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)))
+        .expect("it exists");
+    assert!(
+        scene
+            .emitter_samples(8)
+            .iter()
+            .all(|sample| sample.normal == DVec3::Z)
+    );
+}
+
+#[test]
+fn emissive_textures_weigh_the_power() {
+    let mut scene = Scene::empty("texture");
+    // The left half glows, the right half does not.
+    let texture = Texture {
+        name: String::new(),
+        width: 2,
+        height: 1,
+        rgba8: vec![255, 255, 255, 255, 0, 0, 0, 255],
+        wrap: [Wrap::Clamp; 2],
+        nearest: true,
+        srgb: true,
+    };
+    let texture = scene.add_texture(texture).expect("it is sound");
+    let material = Material {
+        emissive: [1.0; 3],
+        emissive_texture: Some(TextureRef::new(texture)),
+        ..Material::default()
+    };
+    let material = scene.add_material(material).expect("it is sound");
+    let mesh = scene.add_mesh(square(material)).expect("it is sound");
+    scene
+        .add_node(Node {
+            mesh: Some(mesh),
+            ..Node::default()
+        })
+        .expect("it is sound");
+    // A few texels a triangle are read, so the half is met roughly.
+    assert_close(total_power(&scene.emitter_samples(10))[0], 0.5 * PI, 0.15);
+}
+
+#[test]
+fn suns_stand_where_their_angles_say() {
+    let cases = [
+        ("sun:0,0", DVec3::Z),       // in the north, hence shining south
+        ("sun:90,0", DVec3::NEG_X),  // in the east
+        ("sun:180,0", DVec3::NEG_Z), // in the south
+        ("sun:12,90", DVec3::NEG_Y), // overhead
+        ("sun:90,45", DVec3::new(-1.0, -1.0, 0.0).normalize()),
+    ];
+    for (spec, direction) in cases {
+        let parsed = LightSpec::parse(spec).expect(spec);
+        assert!(
+            (parsed.direction - direction).length() < 1e-9,
+            "{spec}: {}",
+            parsed.direction
+        );
+        assert_eq!(parsed.light.kind, LightKind::Directional);
+        assert_eq!(parsed.light.intensity, [PI as f32; 3], "its default");
+    }
+}
+
+#[test]
+fn lights_written_out_are_placed_as_written() {
+    let mut scene = Scene::empty("lights");
+    for spec in ["sun:90,45,2", "point:1,2,3,4:5:6", "spot:1,2,3,0,-2,0,30,7"] {
+        scene
+            .add_light_spec(&LightSpec::parse(spec).expect(spec))
+            .expect(spec);
+    }
+    let [sun, point, spot] = &scene.placed_lights()[..] else {
+        panic!("three lights")
+    };
+    assert_eq!(sun.intensity, [2.0; 3]);
+    assert!(
+        (sun.direction - DVec3::new(-1.0, -1.0, 0.0).normalize()).length() < 1e-9,
+        "{}",
+        sun.direction
+    );
+    assert_eq!(
+        (point.position, point.intensity),
+        (DVec3::new(1.0, 2.0, 3.0), [4.0, 5.0, 6.0])
+    );
+    assert!(
+        (spot.direction - DVec3::NEG_Y).length() < 1e-9,
+        "{}",
+        spot.direction
+    );
+    let LightKind::Spot {
+        inner_angle,
+        outer_angle,
+    } = spot.kind
+    else {
+        panic!("a spot")
+    };
+    assert_close(outer_angle.into(), PI / 6.0, 1e-6);
+    assert_close(inner_angle.into(), 0.9 * PI / 6.0, 1e-6);
+    assert_eq!(scene.facts().punctual_lights, 3);
+    assert_eq!(scene.revisions().geometry, 0);
+}
+
+#[test]
+fn lights_that_cannot_be_read_say_how_to_write_them() {
+    for spec in [
+        "",
+        "moon:1,2",
+        "sun",
+        "sun:1",
+        "sun:a,2",
+        "sun:1,2,-3",
+        "sun:1,2,3,4",
+        "point:1,2,3",
+        "point:1,2,3,1:2",
+        "point:1,2,nan,1",
+        "spot:0,0,0,0,0,0,30,1",
+        "spot:0,0,0,0,1,0,0,1",
+        "spot:0,0,0,0,1,0,91,1",
+        "spot:0,0,0,0,1,0,30,inf",
+    ] {
+        let sentence = LightSpec::parse(spec).expect_err(spec);
+        assert!(sentence.contains("write "), "{spec}: {sentence}");
+    }
+    assert!(LightSpec::parse("spot:0,0,0,0,1,0,90,1").is_ok());
+    assert_eq!(parse_sky("1,2.5,0"), Ok([1.0, 2.5, 0.0]));
+    assert_eq!(parse_sky("0.5"), Ok([0.5; 3]));
+    for spec in ["", "1,2", "1,2,-3", "1,2,x", "1,2,3,4"] {
+        assert!(parse_sky(spec).is_err(), "{spec}");
+    }
+}
