@@ -1,0 +1,626 @@
+//! The functions of `glsl/lib/` that hold non-trivial mathematics, once more on the CPU and under the same names.
+//!
+//! They serve the tests: closed forms are checked here where a debugger reaches, and a test can run a kernel and its twin on the
+//! same random inputs. Each doc comment names the shader file, where the derivation stands. Arithmetic is `f32` as on the
+//! device unless a function says otherwise, so that agreement to a few ulp is a fair demand.
+
+use std::f32::consts::{FRAC_1_PI, PI};
+
+use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles as _};
+
+/// The smallest GGX α that the shaders evaluate (`lib/brdf.glsl`).
+pub const MINIMUM_ALPHA: f32 = 1e-3;
+
+/// Luminance weights of Rec. 709 (`lib/color.glsl`).
+#[must_use]
+pub fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+/// The sRGB curve, IEC 61966-2-1 (`lib/color.glsl`).
+#[must_use]
+pub fn srgb_encode(linear: Vec3) -> Vec3 {
+    let encode = |x: f32| {
+        if x <= 0.003_130_8 {
+            12.92 * x
+        } else {
+            1.055 * x.powf(1.0 / 2.4) - 0.055
+        }
+    };
+    Vec3::new(encode(linear.x), encode(linear.y), encode(linear.z))
+}
+
+/// A unit vector on the unfolded octahedron, both coordinates in −1 … 1 (`lib/octahedral.glsl`).
+#[must_use]
+pub fn octahedral_encode(direction: Vec3) -> Vec2 {
+    let square = Vec2::new(direction.x, direction.y) / direction.abs().element_sum();
+    if direction.z >= 0.0 {
+        square
+    } else {
+        (Vec2::ONE - Vec2::new(square.y, square.x).abs()) * sign_not_zero(square)
+    }
+}
+
+/// The point of the octahedron: its components' absolute values sum to one (`lib/octahedral.glsl`).
+#[must_use]
+pub fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
+    let z = 1.0 - square.x.abs() - square.y.abs();
+    let folded = square - sign_not_zero(square) * (-z).max(0.0);
+    folded.extend(z)
+}
+
+/// The unit vector of [`octahedral_encode`]'s coordinates (`lib/octahedral.glsl`).
+#[must_use]
+pub fn octahedral_decode(square: Vec2) -> Vec3 {
+    octahedral_decode_unnormalized(square).normalize()
+}
+
+/// A unit vector in 2 × snorm16, x in the low half (`lib/octahedral.glsl`).
+#[must_use]
+pub fn pack_direction(direction: Vec3) -> u32 {
+    let square = octahedral_encode(direction);
+    let snorm16 =
+        |x: f32| u32::from(((x.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
+    snorm16(square.y) << 16 | snorm16(square.x)
+}
+
+/// The inverse of [`pack_direction`] (`lib/octahedral.glsl`).
+#[must_use]
+pub fn unpack_direction(bits: u32) -> Vec3 {
+    let snorm16 = |half: u32| (f32::from((half as u16).cast_signed()) / 32767.0).max(-1.0);
+    octahedral_decode(Vec2::new(snorm16(bits & 0xFFFF), snorm16(bits >> 16)))
+}
+
+/// A unit vector in the bits of a positive, normal, finite float (`lib/octahedral.glsl`).
+#[must_use]
+pub fn pack_direction_in_float(direction: Vec3) -> f32 {
+    let square = octahedral_encode(direction);
+    let x = (32768 + (square.x * 32767.0).round() as i32).cast_unsigned();
+    let y = (16384 + (square.y * 16255.0).round() as i32).cast_unsigned();
+    f32::from_bits(y << 16 | x)
+}
+
+/// The inverse of [`pack_direction_in_float`], not of unit length (`lib/octahedral.glsl`).
+#[must_use]
+pub fn unpack_direction_in_float_unnormalized(word: f32) -> Vec3 {
+    let bits = word.to_bits();
+    octahedral_decode_unnormalized(Vec2::new(
+        ((bits & 0xFFFF) as f32 - 32768.0) / 32767.0,
+        ((bits >> 16) as f32 - 16384.0) / 16255.0,
+    ))
+}
+
+/// The cell of a Morton index (`lib/morton.glsl`).
+#[must_use]
+pub fn morton_decode(index: u32) -> IVec2 {
+    let even_bits = |bits: u32| (0..16).fold(0, |even, i| even | (bits >> (2 * i) & 1) << i);
+    UVec2::new(even_bits(index), even_bits(index >> 1)).as_ivec2()
+}
+
+/// Solid angle, in sr, of the square of side `extent` around `tangent` in the plane at distance 1 (`lib/solid_angle.glsl`).
+///
+/// Valid while `extent` is at most a quarter: the arc tangent is a series.
+#[must_use]
+pub fn solid_angle_of_texel(tangent: Vec2, extent: f32) -> f32 {
+    let low = tangent - 0.5 * extent;
+    let high = tangent + 0.5 * extent;
+    let low_high = Vec2::new(low.x, high.y);
+    let high_low = Vec2::new(high.x, low.y);
+    let half_angle = |a: Vec2, b: Vec2, c: Vec2| {
+        let length = |v: Vec2| (v.dot(v) + 1.0).sqrt();
+        let denominator = length(a) * length(b) * length(c)
+            + (a.dot(b) + 1.0) * length(c)
+            + (a.dot(c) + 1.0) * length(b)
+            + (b.dot(c) + 1.0) * length(a);
+        let x = extent * extent / denominator;
+        let x2 = x * x;
+        x * (1.0 - x2 * (1.0 / 3.0 - 0.2 * x2))
+    };
+    2.0 * (half_angle(low, high_low, high) + half_angle(low, high, low_high))
+}
+
+/// glTF's angular falloff of a spot light (`lib/lights.glsl`).
+#[must_use]
+pub fn spot_attenuation(cosine: f32, scale: f32, offset: f32) -> f32 {
+    let attenuation = (cosine * scale + offset).clamp(0.0, 1.0);
+    attenuation * attenuation
+}
+
+/// The scale and offset of [`spot_attenuation`] for the cones' half angles in radians, as KHR_lights_punctual proposes.
+#[must_use]
+pub fn spot_scale_and_offset(inner_angle: f32, outer_angle: f32) -> (f32, f32) {
+    let scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
+    (scale, -outer_angle.cos() * scale)
+}
+
+/// The window that takes a light with a range to zero at that range; 0 is no range (`lib/lights.glsl`).
+#[must_use]
+pub fn range_window(distance: f32, range: f32) -> f32 {
+    let ratio = if range > 0.0 { distance / range } else { 0.0 };
+    (1.0 - ratio.powi(4)).clamp(0.0, 1.0)
+}
+
+/// Number of the largest component: 0 … 5 for +x, −x, +y, −y, +z, −z (`lib/lights.glsl`).
+#[must_use]
+pub fn major_axis_face(v: Vec3) -> u32 {
+    let size = v.abs();
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    2 * axis + u32::from(v[axis as usize] < 0.0)
+}
+
+/// What scatters at a point of a surface (`Surface` of `lib/brdf.glsl`, without the position and the triangle's normal).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scatterer {
+    /// Unit shading normal on the viewer's side.
+    pub normal: Vec3,
+    /// Albedo of the diffuse lobe.
+    pub diffuse_albedo: Vec3,
+    /// Specular reflectance at normal incidence.
+    pub f0: Vec3,
+    /// Specular reflectance at grazing incidence.
+    pub f90: f32,
+    /// Perceptual roughness; α is its square.
+    pub roughness: f32,
+}
+
+/// Schlick's Fresnel reflectance (`lib/brdf.glsl`).
+#[must_use]
+pub fn schlick_fresnel(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
+    f0 + (Vec3::splat(f90) - f0) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
+}
+
+/// The diffuse lobe under its specular layer, in 1/sr (`lib/brdf.glsl`).
+#[must_use]
+pub fn diffuse_brdf(surface: &Scatterer, v_dot_h: f32) -> Vec3 {
+    let fresnel = schlick_fresnel(surface.f0, surface.f90, v_dot_h).max_element();
+    surface.diffuse_albedo * (FRAC_1_PI * (1.0 - fresnel))
+}
+
+/// GGX with Smith's height-correlated masking and Schlick's Fresnel, in 1/sr (`lib/brdf.glsl`).
+#[must_use]
+pub fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+    let middle = (to_light + to_eye)
+        .try_normalize()
+        .unwrap_or(surface.normal);
+    let n_dot_l = surface.normal.dot(to_light).max(1e-4);
+    let n_dot_v = surface.normal.dot(to_eye).max(1e-4);
+    let n_dot_h = surface.normal.dot(middle).clamp(0.0, 1.0);
+    let alpha = (surface.roughness * surface.roughness).max(MINIMUM_ALPHA);
+    let alpha2 = alpha * alpha;
+    let spread = alpha2 * n_dot_h * n_dot_h + surface.normal.cross(middle).length_squared();
+    let distribution = alpha2 / (PI * spread * spread);
+    let visibility = 0.5
+        / (n_dot_l * (n_dot_v * n_dot_v * (1.0 - alpha2) + alpha2).sqrt()
+            + n_dot_v * (n_dot_l * n_dot_l * (1.0 - alpha2) + alpha2).sqrt());
+    schlick_fresnel(surface.f0, surface.f90, to_eye.dot(middle)) * (distribution * visibility)
+}
+
+/// Both lobes, in 1/sr (`lib/brdf.glsl`).
+#[must_use]
+pub fn surface_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+    let middle = (to_light + to_eye)
+        .try_normalize()
+        .unwrap_or(surface.normal);
+    diffuse_brdf(surface, to_eye.dot(middle)) + specular_brdf(surface, to_light, to_eye)
+}
+
+/// What a virtual point light reflects and a receiver of indirect light answers with (`lib/brdf.glsl`).
+#[must_use]
+pub fn indirect_diffuse_albedo(diffuse_albedo: Vec3, f0: Vec3, f90: f32) -> Vec3 {
+    diffuse_albedo * (1.0 - (f0 + (Vec3::splat(f90) - f0) / 21.0).max_element())
+}
+
+/// The two texels of a virtual point light: reflected flux in W, the area in m² that it stands for (`lib/vpl.glsl`).
+#[must_use]
+pub fn pack_vpl(position_rs: Vec3, normal: Vec3, flux: Vec3, area: f32) -> [Vec4; 2] {
+    let word = pack_direction_in_float(normal);
+    let length = unpack_direction_in_float_unnormalized(word).length();
+    [
+        position_rs.extend((area * FRAC_1_PI).max(1e-16)),
+        (flux * (FRAC_1_PI / length)).extend(word),
+    ]
+}
+
+/// The reflected flux, in W, of a virtual point light's two texels: the inverse of what [`pack_vpl`] did to it.
+#[must_use]
+pub fn vpl_flux(vpl: [Vec4; 2]) -> Vec3 {
+    vpl[1].xyz() * (PI * unpack_direction_in_float_unnormalized(vpl[1].w).length())
+}
+
+/// Irradiance in W/m² at a point from a virtual point light, a small Lambertian disc (`lib/vpl.glsl`).
+#[must_use]
+pub fn vpl_irradiance(vpl: [Vec4; 2], position_rs: Vec3, normal: Vec3) -> Vec3 {
+    let difference = vpl[0].xyz() - position_rs;
+    let squared = difference.length_squared() + 1e-20;
+    let light_normal = unpack_direction_in_float_unnormalized(vpl[1].w);
+    let cosines = (-light_normal.dot(difference)).max(0.0) * normal.dot(difference).max(0.0);
+    vpl[1].xyz() * (cosines / (squared * (squared + vpl[0].w)))
+}
+
+/// A texel of the G-buffer's surface target: normals, albedo and roughness (`lib/surface_packing.glsl`).
+///
+/// Returns shading normal, geometric normal, albedo and roughness.
+#[must_use]
+pub fn unpack_surface(texel: UVec4) -> (Vec3, Vec3, Vec3, f32) {
+    let albedo = Vec3::new(
+        half_to_float(texel.z),
+        half_to_float(texel.z >> 16),
+        half_to_float(texel.w),
+    );
+    (
+        unpack_direction(texel.x),
+        unpack_direction(texel.y),
+        albedo,
+        (texel.w >> 16) as f32 / 65535.0,
+    )
+}
+
+/// Narkowicz's fit of the ACES curve (`lib/tonemap.glsl`).
+#[must_use]
+pub fn tonemap_aces(color: Vec3) -> Vec3 {
+    let x = color.min(Vec3::splat(1e4));
+    (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
+}
+
+/// Drago's display luminance over scene luminance, both in units of the adaptation luminance (`lib/tonemap.glsl`).
+#[must_use]
+pub fn tonemap_drago_scale(scaled_luminance: f32, scaled_maximum: f32, bias: f32) -> f32 {
+    let l = scaled_luminance.max(1e-6);
+    let m = scaled_maximum.max(l);
+    let exponent = bias.ln() / 0.5_f32.ln();
+    (l + 1.0).ln() / (2.0 + 8.0 * (l / m).powf(exponent)).ln() / (m + 1.0).log10() / l
+}
+
+fn sign_not_zero(v: Vec2) -> Vec2 {
+    Vec2::new(
+        if v.x >= 0.0 { 1.0 } else { -1.0 },
+        if v.y >= 0.0 { 1.0 } else { -1.0 },
+    )
+}
+
+/// The low 16 bits as an IEEE half; only the positive finite ones that albedos are.
+fn half_to_float(bits: u32) -> f32 {
+    let exponent = bits >> 10 & 0x1F;
+    let mantissa = (bits & 0x3FF) as f32;
+    if exponent == 0 {
+        mantissa * 2.0_f32.powi(-24)
+    } else {
+        (1.0 + mantissa / 1024.0) * 2.0_f32.powi(exponent as i32 - 15)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points spread evenly over the unit sphere (spherical Fibonacci).
+    fn directions(count: u32) -> impl Iterator<Item = Vec3> {
+        (0..count).map(move |i| {
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+            let azimuth = f64::from(i) * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+            let radius = (1.0 - z * z).sqrt();
+            Vec3::new(
+                (radius * azimuth.cos()) as f32,
+                (radius * azimuth.sin()) as f32,
+                z as f32,
+            )
+        })
+    }
+
+    fn assert_close(actual: f64, expected: f64, relative: f64) {
+        assert!(
+            (actual - expected).abs() <= relative * expected.abs(),
+            "{actual} is not {expected} within {relative}"
+        );
+    }
+
+    #[test]
+    fn packed_directions_stay_within_their_error_bounds() {
+        for direction in directions(20_000) {
+            let error = unpack_direction(pack_direction(direction)).distance(direction);
+            assert!(error < 7e-5, "{direction}: {error}");
+            let word = pack_direction_in_float(direction);
+            assert!(
+                word.is_normal() && word.is_sign_positive(),
+                "{direction}: {word}"
+            );
+            let error = unpack_direction_in_float_unnormalized(word)
+                .normalize()
+                .distance(direction);
+            assert!(error < 1.2e-4, "{direction}: {error}");
+        }
+    }
+
+    #[test]
+    fn axes_survive_packing_exactly() {
+        for axis in [
+            Vec3::X,
+            Vec3::NEG_X,
+            Vec3::Y,
+            Vec3::NEG_Y,
+            Vec3::Z,
+            Vec3::NEG_Z,
+        ] {
+            assert_eq!(unpack_direction(pack_direction(axis)), axis);
+            assert_eq!(
+                unpack_direction_in_float_unnormalized(pack_direction_in_float(axis)),
+                axis
+            );
+        }
+    }
+
+    #[test]
+    fn morton_order_visits_every_texel_of_a_tile() {
+        let mut seen = [[false; 16]; 16];
+        for index in 0..256 {
+            let cell = morton_decode(index);
+            seen[cell.y as usize][cell.x as usize] = true;
+        }
+        assert!(seen.iter().flatten().all(|&seen| seen));
+    }
+
+    #[test]
+    fn texels_of_a_cube_face_cover_a_sixth_of_the_sphere() {
+        for size in [8_u32, 64, 512] {
+            let step = 2.0 / size as f32;
+            let sum: f64 = (0..size * size)
+                .map(|i| Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5) * step - 1.0)
+                .map(|tangent| f64::from(solid_angle_of_texel(tangent, step)))
+                .sum();
+            assert_close(sum, 4.0 * std::f64::consts::PI / 6.0, 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_texel_far_off_the_axis_shrinks_with_the_cube_of_the_cosine() {
+        let step = 1e-3_f32;
+        for tangent in [
+            Vec2::ZERO,
+            Vec2::new(1.0, 1.0),
+            Vec2::new(3.7, -2.0),
+            Vec2::new(40.0, 0.0),
+        ] {
+            let cosine = f64::from(1.0 + tangent.length_squared()).sqrt().recip();
+            let expected = f64::from(step) * f64::from(step) * cosine.powi(3);
+            assert_close(
+                f64::from(solid_angle_of_texel(tangent, step)),
+                expected,
+                1e-5,
+            );
+        }
+    }
+
+    /// ∫ I dω = 2π((1 − cos i) + (cos i − cos o)/3) for glTF's squared linear falloff between the cones.
+    #[test]
+    fn the_texels_of_a_spot_view_add_up_to_its_power() {
+        for (inner, outer) in [
+            (10.0_f32, 15.0_f32),
+            (20.0, 45.0),
+            (0.0, 60.0),
+            (74.0, 75.0),
+        ] {
+            let (inner, outer) = (inner.to_radians(), outer.to_radians());
+            let (scale, offset) = spot_scale_and_offset(inner, outer);
+            let size = 512_u32;
+            let step = 2.0 * outer.tan() * 1.02 / size as f32;
+            let sum: f64 = (0..size * size)
+                .map(|i| {
+                    (Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5)
+                        - size as f32 / 2.0)
+                        * step
+                })
+                .map(|tangent| {
+                    let cosine = (1.0 + tangent.length_squared()).sqrt().recip();
+                    f64::from(
+                        spot_attenuation(cosine, scale, offset)
+                            * solid_angle_of_texel(tangent, step),
+                    )
+                })
+                .sum();
+            let (cos_inner, cos_outer) = (f64::from(inner.cos()), f64::from(outer.cos()));
+            let power =
+                2.0 * std::f64::consts::PI * ((1.0 - cos_inner) + (cos_inner - cos_outer) / 3.0);
+            assert_close(sum, power, 0.005);
+        }
+    }
+
+    #[test]
+    fn a_range_ends_the_light_there_and_none_never_does() {
+        assert_eq!(range_window(5.0, 0.0), 1.0);
+        assert_eq!(range_window(0.0, 5.0), 1.0);
+        assert_eq!(range_window(5.0, 5.0), 0.0);
+        assert_eq!(range_window(9.0, 5.0), 0.0);
+    }
+
+    #[test]
+    fn every_axis_has_its_own_face() {
+        let axes = [
+            Vec3::X,
+            Vec3::NEG_X,
+            Vec3::Y,
+            Vec3::NEG_Y,
+            Vec3::Z,
+            Vec3::NEG_Z,
+        ];
+        for (face, axis) in (0..).zip(axes) {
+            assert_eq!(major_axis_face(axis), face);
+        }
+    }
+
+    /// ∫ f cosθ dω over a stratified hemisphere of half vectors, for a light seen from `cos_eye`: at most 1 for white, as GGX
+    /// with single scattering loses light and gains none.
+    fn white_specular_albedo(roughness: f32, cos_eye: f32) -> f64 {
+        let surface = Scatterer {
+            normal: Vec3::Z,
+            diffuse_albedo: Vec3::ZERO,
+            f0: Vec3::ONE,
+            f90: 1.0,
+            roughness,
+        };
+        let to_eye = Vec3::new((1.0 - cos_eye * cos_eye).sqrt(), 0.0, cos_eye);
+        let alpha = (roughness * roughness).max(MINIMUM_ALPHA);
+        let strata = 200_u32;
+        // Half vectors by their GGX density D·(n·h), so that sharp lobes are met: light pdf = D·(n·h)/(4·v·h).
+        let sum: f64 = (0..strata * strata)
+            .map(|i| {
+                let u = ((i % strata) as f32 + 0.5) / strata as f32;
+                let azimuth = ((i / strata) as f32 + 0.5) / strata as f32 * 2.0 * PI;
+                let tan2 = alpha * alpha * u / (1.0 - u);
+                let cosine = (1.0 + tan2).sqrt().recip();
+                let sine = tan2.sqrt() * cosine;
+                let middle = Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine);
+                let to_light = 2.0 * to_eye.dot(middle) * middle - to_eye;
+                let v_dot_h = to_eye.dot(middle);
+                if to_light.z <= 0.0 || v_dot_h <= 0.0 {
+                    return 0.0;
+                }
+                let spread = alpha * alpha * cosine * cosine + sine * sine;
+                let density = alpha * alpha / (PI * spread * spread) * cosine / (4.0 * v_dot_h);
+                f64::from(specular_brdf(&surface, to_light, to_eye).x * to_light.z / density)
+            })
+            .sum();
+        sum / f64::from(strata * strata)
+    }
+
+    #[test]
+    fn a_white_specular_lobe_reflects_at_most_what_arrives() {
+        for roughness in [0.05, 0.2, 0.5, 0.8, 1.0] {
+            for cos_eye in [0.1, 0.5, 1.0] {
+                let albedo = white_specular_albedo(roughness, cos_eye);
+                assert!(
+                    albedo < 1.001 && albedo > 0.3,
+                    "roughness {roughness}, cosine {cos_eye}: {albedo}"
+                );
+            }
+        }
+        assert_close(white_specular_albedo(0.05, 1.0), 1.0, 0.001);
+    }
+
+    #[test]
+    fn the_brdf_is_reciprocal_and_finite_down_to_a_mirror() {
+        let surface = |roughness| Scatterer {
+            normal: Vec3::Z,
+            diffuse_albedo: Vec3::splat(0.5),
+            f0: Vec3::splat(0.04),
+            f90: 1.0,
+            roughness,
+        };
+        let upper: Vec<Vec3> = directions(200).filter(|d| d.z > 0.01).collect();
+        for &l in &upper {
+            for &v in &upper {
+                let (there, back) = (
+                    surface_brdf(&surface(0.4), l, v),
+                    surface_brdf(&surface(0.4), v, l),
+                );
+                assert!(
+                    there.abs_diff_eq(back, 1e-4 * there.x),
+                    "{l} {v}: {there} {back}"
+                );
+                assert!(surface_brdf(&surface(0.0), l, v).is_finite());
+            }
+        }
+        assert!(specular_brdf(&surface(0.0), Vec3::NEG_Z, Vec3::Z).is_finite());
+    }
+
+    #[test]
+    fn the_mean_of_schlick_is_a_twenty_first_of_the_way() {
+        let steps = 100_000;
+        let mean: f64 = (0..steps)
+            .map(|i| (f64::from(i) + 0.5) / f64::from(steps))
+            .map(|mu| {
+                f64::from(schlick_fresnel(Vec3::splat(0.04), 1.0, mu as f32).x) * 2.0 * mu
+                    / f64::from(steps)
+            })
+            .sum();
+        let albedo = indirect_diffuse_albedo(Vec3::ONE, Vec3::splat(0.04), 1.0);
+        assert_close(f64::from(albedo.x), 1.0 - mean, 1e-5);
+    }
+
+    #[test]
+    fn a_virtual_light_far_away_is_a_point_and_near_by_a_disc() {
+        let (flux, area) = (Vec3::new(1.0, 2.0, 3.0), 0.5_f32);
+        let vpl = pack_vpl(Vec3::ZERO, Vec3::Z, flux, area);
+        assert!(vpl_flux(vpl).abs_diff_eq(flux, 1e-6));
+        for distance in [0.01_f32, 0.1, 1.0, 10.0, 1000.0] {
+            let irradiance = vpl_irradiance(vpl, Vec3::Z * distance, Vec3::NEG_Z);
+            // The disc's exact irradiance on its axis: πL·R²/(R² + d²) with L = Φ/(πA), A = πR².
+            let radius2 = area / PI;
+            let expected = flux * (radius2 / (area * (radius2 + distance * distance)));
+            assert!(
+                irradiance.abs_diff_eq(expected, 1e-5 * expected.z),
+                "{distance}: {irradiance} {expected}"
+            );
+        }
+        assert_eq!(vpl_irradiance(vpl, Vec3::ZERO, Vec3::Z), Vec3::ZERO);
+        assert_eq!(vpl_irradiance(vpl, Vec3::NEG_Z, Vec3::Z), Vec3::ZERO);
+    }
+
+    #[test]
+    fn a_virtual_light_of_any_direction_keeps_its_flux() {
+        for normal in directions(500) {
+            let vpl = pack_vpl(Vec3::ONE, normal, Vec3::splat(2.0), 1e-3);
+            assert!(vpl_flux(vpl).abs_diff_eq(Vec3::splat(2.0), 1e-5));
+            let facing = vpl_irradiance(vpl, Vec3::ONE + 3.0 * normal, -normal);
+            let expected = 2.0 * FRAC_1_PI / (9.0 + 1e-3 * FRAC_1_PI);
+            assert!(
+                (facing.x - expected).abs() < 1e-4 * expected,
+                "{normal}: {} {expected}",
+                facing.x
+            );
+        }
+    }
+
+    #[test]
+    fn a_surface_texel_unpacks() {
+        let half_of_one_half = 0x3800_u32;
+        let half_of_one = 0x3C00_u32;
+        let texel = UVec4::new(
+            pack_direction(Vec3::Y),
+            pack_direction(Vec3::NEG_Z),
+            half_of_one << 16 | half_of_one_half,
+            0xFFFF_0000 | half_of_one_half,
+        );
+        assert_eq!(
+            unpack_surface(texel),
+            (Vec3::Y, Vec3::NEG_Z, Vec3::new(0.5, 1.0, 0.5), 1.0)
+        );
+    }
+
+    #[test]
+    fn tone_curves_rise_and_end_at_white() {
+        let mut last = (0.0, 0.0);
+        for i in 1..=1000 {
+            let l = 0.05 * i as f32;
+            let (aces, drago) = (
+                tonemap_aces(Vec3::splat(l)).x,
+                l * tonemap_drago_scale(l, 50.0, 0.85),
+            );
+            assert!(aces >= last.0 && drago >= last.1, "{l}: {aces} {drago}");
+            last = (aces, drago);
+        }
+        // Drago 2003: the brightest pixel shows the display's full luminance, 1 at 100 cd/m².
+        assert_close(f64::from(last.1), 1.0, 1e-5);
+        assert!(tonemap_drago_scale(0.0, 0.0, 0.85).is_finite());
+        assert!(tonemap_aces(Vec3::splat(f32::MAX)).is_finite());
+    }
+
+    #[test]
+    fn srgb_meets_its_fixed_points() {
+        let encoded = srgb_encode(Vec3::new(0.0, 0.214_041_14, 1.0));
+        assert!(
+            encoded.abs_diff_eq(Vec3::new(0.0, 0.5, 1.0), 1e-6),
+            "{encoded}"
+        );
+    }
+
+    #[test]
+    fn luminance_of_white_is_one() {
+        assert!((luminance(Vec3::ONE) - 1.0).abs() < 1e-6);
+    }
+}
