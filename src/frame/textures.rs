@@ -1,0 +1,135 @@
+//! Textures without bindless descriptors: images of one size and encoding share a 2D array, a material's set binds the
+//! arrays that its textures lie in, and its record says which layers. Compute passes can bind the few arrays themselves.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use ash::vk;
+
+use crate::graph::bindings::BindingSet;
+use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
+use crate::shaders::{gbuffer, types};
+use crate::vulkan::program::{BindingKind, ImageDim};
+use crate::vulkan::{Descriptor, Device, Image, ImageInfo, MaterialSets, Pipelines, SamplerKind, SubresourceView, VulkanError, image_with};
+
+/// Where a texture lies.
+#[derive(Clone, Copy)]
+struct Layer {
+    array: usize,
+    layer: u32,
+}
+
+/// All textures of a scene.
+pub(crate) struct TextureArrays {
+    arrays: Vec<Arc<Image>>,
+    layers: Vec<Layer>,
+}
+
+impl TextureArrays {
+    pub(super) fn upload(device: &Arc<Device>, scene: &Scene) -> Result<TextureArrays, VulkanError> {
+        let mut groups: BTreeMap<(u32, u32, bool), Vec<usize>> = BTreeMap::new();
+        for (index, texture) in scene.textures().iter().enumerate() {
+            groups.entry((texture.width, texture.height, texture.srgb)).or_default().push(index);
+        }
+        let mut made = TextureArrays { arrays: Vec::new(), layers: vec![Layer { array: 0, layer: 0 }; scene.textures().len()] };
+        let most = device.limits().max_image_array_layers as usize;
+        for ((width, height, srgb), members) in groups {
+            for members in members.chunks(most) {
+                for (layer, &member) in (0..).zip(members) {
+                    made.layers[member] = Layer { array: made.arrays.len(), layer };
+                }
+                let texels: Vec<&[u8]> = members.iter().map(|&member| scene.textures()[member].rgba8.as_slice()).collect();
+                let name = format!("scene.textures.{width}x{height}{}", if srgb { ".srgb" } else { "" });
+                made.arrays.push(image_with(device, &name, array_info(width, height, srgb, texels.len()), &texels)?);
+            }
+        }
+        if made.arrays.is_empty() {
+            return Ok(made);
+        }
+        // What a material without a texture of some kind binds in its place.
+        made.arrays.push(image_with(device, "scene.textures.none", array_info(1, 1, false, 1), &[&[255; 4]])?);
+        Ok(made)
+    }
+
+    /// How `material` reads its textures.
+    pub(super) fn uses_of(&self, material: &Material) -> types::MaterialTextures {
+        let identity = types::TextureUse { u_row: [1.0, 0.0, 0.0], v_row: [0.0, 1.0, 0.0], layer: 0, texcoord: 0 };
+        let read = |texture: Option<TextureRef>| {
+            texture.map_or(identity, |texture| types::TextureUse {
+                u_row: texture.transform[0],
+                v_row: texture.transform[1],
+                layer: self.layers[texture.texture.0].layer,
+                texcoord: texture.texcoord,
+            })
+        };
+        types::MaterialTextures {
+            base_color: read(material.base_color_texture),
+            metallic_roughness: read(material.metallic_roughness_texture),
+            normal: read(material.normal_texture),
+            emissive: read(material.emissive_texture),
+            specular: read(material.specular_texture),
+            specular_color: read(material.specular_color_texture),
+            transmission: read(material.transmission_texture),
+        }
+    }
+}
+
+fn array_info(width: u32, height: u32, srgb: bool, layers: usize) -> ImageInfo {
+    ImageInfo {
+        format: if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM },
+        extent: [width, height, 1],
+        mips: 32 - width.max(height).leading_zeros(),
+        layers: u32::try_from(layers).unwrap_or(u32::MAX),
+        volume: false,
+    }
+}
+
+/// A descriptor set for each material of a scene that has textures.
+pub(crate) struct MaterialTextureSets {
+    pub(crate) sets: Arc<MaterialSets>,
+    arrays: Vec<Arc<Image>>,
+}
+
+impl MaterialTextureSets {
+    pub(super) fn new(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene, textures: TextureArrays) -> Result<MaterialTextureSets, VulkanError> {
+        let none = textures.arrays.len() - 1;
+        let descriptor = |texture: Option<TextureRef>| -> Result<Descriptor, VulkanError> {
+            let place = texture.map(|texture| textures.layers[texture.texture.0].array).unwrap_or(none);
+            let kind = texture.map(|texture| sampler_of(&scene.textures()[texture.texture.0])).unwrap_or(SamplerKind::NearestClamp);
+            let image = &textures.arrays[place];
+            let what = SubresourceView { dim: ImageDim::D2Array, mips: 0..image.info.mips, aspect: vk::ImageAspectFlags::COLOR, format: image.info.format };
+            Ok(Descriptor::Image { view: image.view(&what)?, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, sampler: pipelines.sampler(kind)? })
+        };
+        let mut sets = Vec::new();
+        for material in scene.materials() {
+            let bound = [
+                material.base_color_texture,
+                material.metallic_roughness_texture,
+                material.normal_texture,
+                material.emissive_texture,
+                material.specular_texture,
+                material.specular_color_texture,
+                material.transmission_texture,
+            ];
+            let kind = BindingKind::SampledImage(ImageDim::D2Array);
+            let set = (0..).zip(bound).map(|(binding, texture)| Ok((binding, kind, descriptor(texture)?)));
+            sets.push(set.collect::<Result<Vec<_>, VulkanError>>()?);
+        }
+        // Every program that reads textures declares the same set.
+        let layout = pipelines.set_layout(<gbuffer::Textured as BindingSet>::PROGRAM, 1)?;
+        Ok(MaterialTextureSets { sets: Arc::new(MaterialSets::new(device, layout, &sets)?), arrays: textures.arrays })
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.arrays.iter().map(|array| array.bytes()).sum()
+    }
+}
+
+fn sampler_of(texture: &Texture) -> SamplerKind {
+    let wrap = texture.wrap.map(|wrap| match wrap {
+        Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
+        Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
+        Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    });
+    SamplerKind::Texture { wrap, nearest: texture.nearest }
+}
