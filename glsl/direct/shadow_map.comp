@@ -8,8 +8,8 @@
 //
 //   L(x, v) = Σ_i f(l_i, v) · E⊥_i(x) · (n·l_i)⁺ · V_i(x)
 //
-// f: lib/brdf.glsl; E⊥: lib/lights.glsl; V: filtered shadow maps, lib/shadow.glsl. A light behind the shading normal or behind the triangle
-// itself gives nothing.
+// f: lib/brdf.glsl; E⊥: lib/lights.glsl; V: filtered shadow maps, lib/shadow.glsl. A light behind the shading normal or behind
+// the triangle itself gives nothing.
 
 layout(local_size_x = 64) in;
 

@@ -10,7 +10,7 @@
 layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
 
 // 1: a fragment whose alpha is below the material's cutoff is a hole.
-layout(constant_id = 2) const uint ALPHA_MASK = 0u;
+layout(constant_id = 1) const uint ALPHA_MASK = 0u;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;

@@ -16,7 +16,7 @@ layout(set = 1, binding = 5) uniform sampler2DArray specular_color_texture;
 layout(set = 1, binding = 6) uniform sampler2DArray transmission_texture;
 
 // The bits of the texture kinds that any material drawn with this pipeline has: the kernel holds code for no others.
-layout(constant_id = 1) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
+layout(constant_id = 0) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
 
 bool has_texture(Material material, uint kind) {
     return (material.flags & TEXTURES & kind) != 0u;

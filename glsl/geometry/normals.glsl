@@ -8,10 +8,6 @@
 layout(set = 0, binding = 2) uniform usamplerBuffer indices;   // r32ui: the scene's index buffer
 layout(set = 0, binding = 3) uniform samplerBuffer positions;  // r32f: the scene's vertex positions, three texels each
 
-// 1: the triangle's own normal, from its three vertices. 0: the interpolated vertex normal stands for it; only for scenes whose
-// primitives all have normals that agree with their winding.
-layout(constant_id = 0) const uint FACE_NORMALS = 1u;
-
 vec3 vertex_position(uint vertex) {
     int first = 3 * int(vertex);
     return vec3(
@@ -19,6 +15,7 @@ vec3 vertex_position(uint vertex) {
 }
 
 // The normal of the triangle, exact however small it is on the screen, where screen-space derivatives of a position are noise.
+// Twelve fetches a fragment, for primitives with vertex normals too: light views and shadows need the plane that was rasterised.
 vec3 face_normal(Instance instance, uint primitive) {
     int first = int(instance.first_index + 3u * primitive);
     uvec3 corners = uvec3(texelFetch(indices, first).x, texelFetch(indices, first + 1).x, texelFetch(indices, first + 2).x)
@@ -35,14 +32,9 @@ struct Normals {
 
 // The cofactor transform makes normals follow the winding on the screen, so a front-facing triangle's points to the viewer.
 Normals fragment_normals(Instance instance, vec3 vertex_normal, uint primitive, bool front_facing) {
-    vec3 interpolated = transform_normal(instance, vertex_normal);
-    vec3 face = interpolated;
-    if (FACE_NORMALS != 0u) {
-        face = face_normal(instance, primitive);
-        if ((instance.flags & INSTANCE_FLAT_NORMALS) != 0u) {
-            interpolated = face;
-        }
-    }
+    vec3 face = face_normal(instance, primitive);
+    bool flat_normals = (instance.flags & INSTANCE_FLAT_NORMALS) != 0u;
+    vec3 interpolated = flat_normals ? face : transform_normal(instance, vertex_normal);
     float viewer_side = front_facing ? 1.0 : -1.0;
     float outside = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
     vec3 geometric = viewer_side * normalize_or(face, vec3(0.0, 0.0, 1.0));

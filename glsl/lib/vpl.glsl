@@ -33,8 +33,8 @@ Vpl unpack_vpl(vec4 first, vec4 second) {
 //   E(x) = Φ/π · (n_y·−ω)⁺ (n_x·ω)⁺ / (D² + A/π)      written as      strength · (n_y·−D)⁺ (n_x·D)⁺ / (D²(D² + A/π))
 //
 // A Lambertian disc of area A = πR² and radiance L sends Φ = πLA; on its axis, at distance d, the irradiance is
-// πL·R²/(R² + d²) = Φ/(πd² + A) = Φ/π / (d² + A/π). Off the axis the cosines are a point's. Reich 2015, eq. 4.4 (after Lensing & Broll 2013),
-// prints d² + A, which darkens the near field by up to π. Bounded by strength/(A/π): no singularity, no tuned constant.
+// πL·R²/(R² + d²) = Φ/(πd² + A) = Φ/π / (d² + A/π). Off the axis the cosines are a point's. Reich 2015, eq. 4.4
+// (after Lensing & Broll 2013), prints d² + A, which darkens the near field by up to π. Bounded by strength/(A/π): no singularity, no tuned constant.
 float vpl_form_factor(Vpl vpl, vec3 position_rs, vec3 normal) {
     vec3 difference = vpl.position_rs - position_rs;
     float squared = dot(difference, difference) + 1e-20;

@@ -2,7 +2,8 @@
 #include "lib/prelude.glsl"
 #include "tonemap/adaptation.glsl"
 
-// One group adds up the blocks: the image's logarithmic average and maximum luminance, in W/(m²·sr). Fixed order: the same bits every time.
+// One group adds up the blocks: the image's logarithmic average and maximum luminance, in W/(m²·sr).
+// Fixed order: the same bits every time.
 
 layout(local_size_x = 64) in;
 
