@@ -5,6 +5,8 @@ pub mod output;
 pub mod renderer;
 pub mod scene;
 
+mod diffuse;
+mod frame;
 mod graph;
 #[allow(unsafe_code, reason = "the one home of Vulkan calls")]
 mod vulkan;

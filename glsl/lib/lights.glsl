@@ -23,7 +23,7 @@ struct Light {
     float spot_scale;    // glTF: clamp(cosθ·scale + offset, 0, 1)²
     float spot_offset;
     float range;         // glTF; metres; 0: unlimited
-    uint view_count;     // 6 point, 1 spot and directional, 5 emitter; 0: the light casts no shadow
+    uint view_count;     // 6 point and wide spot, 1 spot and directional, 5 emitter; 0: the light casts no shadow
 };
 
 struct LightView {
@@ -125,24 +125,18 @@ float area_of_texel(LightView view, vec2 tangent, float depth, vec3 normal) {
     return width * width / max(abs(dot(normal, ray)), 0.1 * length(ray));
 }
 
-// 0 … 5 for +x, −x, +y, −y, +z, −z: the largest component.
-uint major_axis_face(vec3 v) {
-    vec3 size = abs(v);
-    uint axis = size.x >= size.y && size.x >= size.z ? 0u : size.y >= size.z ? 1u : 2u;
-    return 2u * axis + (v[axis] < 0.0 ? 1u : 0u);
-}
-
-// Which of the light's views sees the direction `away` from the light. Point lights: the axes of render space, in the order of
-// major_axis_face(). Emitters: `first` looks along the normal, then come its right, left, down and up.
+// Which of the light's views sees the direction `away` from the light. A light with several views looks along the first one's
+// axes in the order forward, right, left, down, up, back; a hemicube has no back.
 uint view_towards(Light light, LightView first, vec3 away) {
-    if (light.kind == LIGHT_POINT) {
-        return light.first_view + major_axis_face(away);
+    if (light.view_count <= 1u) {
+        return light.first_view;
     }
-    if (light.kind == LIGHT_EMITTER) {
-        uint face = major_axis_face(vec3(dot(away, first.right), dot(away, first.down), dot(away, first.forward)));
-        return light.first_view + (face < 4u ? face + 1u : 0u);
+    vec3 local = vec3(dot(away, first.right), dot(away, first.down), dot(away, first.forward));
+    vec3 size = abs(local);
+    if (size.z >= max(size.x, size.y)) {
+        return light.first_view + (local.z < 0.0 ? min(5u, light.view_count - 1u) : 0u);
     }
-    return light.first_view;
+    return light.first_view + (size.x >= size.y ? (local.x < 0.0 ? 2u : 1u) : (local.y < 0.0 ? 4u : 3u));
 }
 
 #endif

@@ -53,6 +53,8 @@ pub(crate) struct DrawnInstance {
     pub(crate) material: usize,
     /// The material reads a texture.
     pub(crate) textured: bool,
+    /// Which kinds, as the shaders' bits.
+    pub(crate) texture_kinds: u32,
     pub(crate) masked: bool,
     /// Corners of its box in render space, for culling.
     pub(crate) center_rs: [f32; 3],
@@ -128,6 +130,11 @@ impl SceneData {
         let buffers = [&meshes.indices, &self.instances, &self.materials, &self.material_textures];
         let buffers: u64 = buffers.iter().map(|buffer| buffer.bytes()).sum();
         streams + buffers + self.texture_sets.as_ref().map_or(0, MaterialTextureSets::bytes)
+    }
+
+    /// The kinds of textures, as the shaders' bits, that the instances which `takes` accepts read.
+    pub(crate) fn texture_kinds(&self, takes: impl Fn(&DrawnInstance) -> bool) -> u32 {
+        self.drawn.iter().filter(|drawn| takes(drawn)).fold(0, |kinds, drawn| kinds | drawn.texture_kinds)
     }
 
     /// Whether some drawn material reads textures.
@@ -282,6 +289,7 @@ fn drawn_instance(instance: &Instance, place: Place, index: usize, material: &Ma
         vertex_offset: place.vertex_offset,
         material: index,
         textured: material.textures().next().is_some(),
+        texture_kinds: texture_kinds(material),
         masked: material.alpha != Alpha::Opaque,
         center_rs: to_render.transform_point3((low + high) * 0.5).as_vec3().to_array(),
         half_axes_rs: axes.map(|axis| axis.as_vec3().to_array()),
@@ -303,7 +311,6 @@ fn upload_materials(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene) 
 }
 
 fn material_record(material: &Material) -> types::Material {
-    let bit = |present: bool, bit: u32| if present { bit } else { 0 };
     types::Material {
         base_color: material.base_color,
         emissive: if material.unlit { [0.0; 3] } else { material.emissive },
@@ -318,14 +325,20 @@ fn material_record(material: &Material) -> types::Material {
             Alpha::Opaque => -1.0,
             Alpha::Mask { cutoff } => cutoff,
         },
-        flags: bit(material.double_sided, 1)
-            | bit(material.unlit, 2)
-            | bit(material.base_color_texture.is_some(), 4)
-            | bit(material.metallic_roughness_texture.is_some(), 8)
-            | bit(material.normal_texture.is_some(), 16)
-            | bit(material.emissive_texture.is_some(), 32)
-            | bit(material.specular_texture.is_some(), 64)
-            | bit(material.specular_color_texture.is_some(), 128)
-            | bit(material.transmission_texture.is_some(), 256),
+        flags: u32::from(material.double_sided) | u32::from(material.unlit) << 1 | texture_kinds(material),
     }
+}
+
+/// The bits of glsl/lib/scene.glsl.
+fn texture_kinds(material: &Material) -> u32 {
+    let textures = [
+        material.base_color_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+        material.emissive_texture,
+        material.specular_texture,
+        material.specular_color_texture,
+        material.transmission_texture,
+    ];
+    (2..).zip(textures).filter(|(_, texture)| texture.is_some()).map(|(bit, _)| 1 << bit).sum()
 }

@@ -33,7 +33,7 @@ use bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
 use demand::Version;
 pub use describe::GraphDescription;
 pub(crate) use execute::{Executed, ReadBack};
-pub(crate) use pass::{DrawCall, DrawGroup, DrawList, PassBuilder};
+pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList, PassBuilder};
 use pass::{Pass, Work};
 pub(crate) use store::Store;
 
@@ -186,6 +186,11 @@ impl<'s> Graph<'s> {
         self.wanted.extend((image.mips.0..image.mips.1).map(|mip| Version { place: (image.id, mip), key: content[mip as usize].0 }));
     }
 
+    /// Asks that the buffer be made.
+    pub(crate) fn want_buffer<T>(&mut self, buffer: BufferRef<T>) {
+        self.wanted.push(Version { place: (buffer.id, 0), key: self.resources[buffer.id].content[0].0 });
+    }
+
     /// Asks that the image be made and its first mip level copied to the host. Returns its number among the read-backs.
     pub(crate) fn read_back(&mut self, image: ImageRef) -> ReadBack {
         self.want(image.mip(0));
@@ -196,7 +201,7 @@ impl<'s> Graph<'s> {
 
     /// Asks that the buffer be made and copied to the host.
     pub(crate) fn read_back_buffer<T>(&mut self, buffer: BufferRef<T>) -> ReadBack {
-        self.wanted.push(Version { place: (buffer.id, 0), key: self.resources[buffer.id].content[0].0 });
+        self.want_buffer(buffer);
         self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
         self.read_backs.push(buffer.id);
         ReadBack(self.read_backs.len() - 1)

@@ -51,6 +51,13 @@ pub struct FrameRequest {
     pub read_back: bool,
 }
 
+impl FrameRequest {
+    /// The image, read back, timed as a frame.
+    pub fn new(size: [u32; 2], camera: CameraView) -> FrameRequest {
+        FrameRequest { size, camera, slots: Vec::new(), image: true, tonemap: None, timing: Timing::Frame, read_back: true }
+    }
+}
+
 /// An RGB image in row-major order from the top left, linear Rec.709 radiance, W/(m² sr).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorImage {

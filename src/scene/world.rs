@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Frames per second of [`Scene::set_frame`].
 const FRAME_RATE: f64 = 30.0;
@@ -45,6 +46,23 @@ pub struct Revisions {
     pub lights: u64,
     /// Cameras and where they stand.
     pub camera: u64,
+}
+
+/// Tells scenes apart, so that what a renderer keeps of one is never taken for another's. A clone is a scene of its own.
+#[derive(Debug)]
+struct Identity(u64);
+
+impl Default for Identity {
+    fn default() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Identity(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+impl Clone for Identity {
+    fn clone(&self) -> Self {
+        Identity::default()
+    }
 }
 
 /// What is lit, what lights it, and from where it is seen. See the [module](super) for an overview.
@@ -87,6 +105,11 @@ impl Scene {
             name: name.to_owned(),
             ..Scene::default()
         }
+    }
+
+    /// A number that no other scene of this process has; clones differ from their originals.
+    pub fn identity(&self) -> u64 {
+        self.identity.0
     }
 
     /// All meshes.

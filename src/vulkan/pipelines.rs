@@ -10,15 +10,16 @@ use ash::vk;
 
 use super::device::Device;
 use super::error::{Called, VulkanError};
-use super::program::{BindingKind, Program, StageKind};
+use super::program::{BindingKind, ImageDim, Program, StageKind};
+
+/// Textures that a material binds (glsl/geometry/material_textures.glsl).
+const MATERIAL_TEXTURES: u32 = 7;
 
 /// How an image is filtered and continued beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum SamplerKind {
     NearestClamp,
     LinearClamp,
-    /// Four depth comparisons, weighted bilinearly: lit where the reference is at least (reverse-Z) the stored depth.
-    ShadowCompare,
     /// A texture of the scene.
     Texture { wrap: [vk::SamplerAddressMode; 2], nearest: bool },
 }
@@ -151,13 +152,15 @@ impl Pipelines {
         let stages = program.stage_flags();
         let mut sets = [vk::DescriptorSetLayout::null(); 2];
         for (set, place) in (0..).zip(&mut sets) {
-            let bindings: Vec<_> = program
-                .bindings
-                .iter()
-                .filter(|binding| binding.set == set)
-                .map(|binding| {
+            let declared = program.bindings.iter().filter(|binding| binding.set == set).map(|binding| (binding.binding, binding.kind));
+            // One set per material fits every program, also one that reads but some of the textures.
+            let textures = (0..MATERIAL_TEXTURES).map(|binding| (binding, BindingKind::SampledImage(ImageDim::D2Array)));
+            let bindings: Vec<(u32, BindingKind)> = if set == 1 && program.has_set(1) { textures.collect() } else { declared.collect() };
+            let bindings: Vec<_> = bindings
+                .into_iter()
+                .map(|(binding, kind)| {
                     let layout = vk::DescriptorSetLayoutBinding::default();
-                    layout.binding(binding.binding).descriptor_type(binding.kind.descriptor_type()).descriptor_count(1).stage_flags(stages)
+                    layout.binding(binding).descriptor_type(kind.descriptor_type()).descriptor_count(1).stage_flags(stages)
                 })
                 .collect();
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
@@ -294,7 +297,7 @@ impl Pipelines {
         }
         let (filter, [u, v]) = match kind {
             SamplerKind::NearestClamp => (vk::Filter::NEAREST, [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2]),
-            SamplerKind::LinearClamp | SamplerKind::ShadowCompare => (vk::Filter::LINEAR, [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2]),
+            SamplerKind::LinearClamp => (vk::Filter::LINEAR, [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2]),
             SamplerKind::Texture { wrap, nearest } => (if nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR }, wrap),
         };
         let texture = matches!(kind, SamplerKind::Texture { .. });
@@ -309,8 +312,6 @@ impl Pipelines {
             .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
             .anisotropy_enable(anisotropic)
             .max_anisotropy(if anisotropic { self.device.limits().max_sampler_anisotropy.min(8.0) } else { 1.0 })
-            .compare_enable(kind == SamplerKind::ShadowCompare)
-            .compare_op(vk::CompareOp::GREATER_OR_EQUAL)
             .max_lod(vk::LOD_CLAMP_NONE);
         // SAFETY: the device is alive; anisotropy is on only where the device has it.
         let sampler = unsafe { self.device.raw.create_sampler(&info, None) }.called("vkCreateSampler")?;
@@ -359,8 +360,8 @@ pub(crate) fn pipeline_stages(program: &Program) -> vk::PipelineStageFlags2 {
 /// Descriptor pool sizes for `sets` sets of ordinary passes.
 pub(crate) fn pool_sizes(sets: u32) -> [vk::DescriptorPoolSize; 5] {
     let kinds = [
-        (BindingKind::SampledImage(super::program::ImageDim::D2), 8),
-        (BindingKind::StorageImage(super::program::ImageDim::D2), 6),
+        (BindingKind::SampledImage(ImageDim::D2), 8),
+        (BindingKind::StorageImage(ImageDim::D2), 6),
         (BindingKind::TexelBuffer, 4),
         (BindingKind::Uniform, 4),
         (BindingKind::Storage, 8),

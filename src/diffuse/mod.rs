@@ -1,0 +1,3 @@
+//! Methods of the `diffuse` slot.
+
+pub(crate) mod rsm;

@@ -1,0 +1,81 @@
+//! `rsm`: one-bounce diffuse light from reflective shadow maps (Dachsbacher & Stamminger 2005), the baseline of two of
+//! the papers. Every pixel gathers N virtual point lights, without visibility:
+//!
+//!   L(x) = ρ/π · Σ_k Φ_k/π · (n_k·−ω)⁺ (n_x·ω)⁺ / (d² + A_k/π)      W/(m² sr)
+//!
+//! Where the paper samples a fixed pattern around each pixel's projection into the map, the VPLs here are strata of the
+//! flux that all light views reflect together: each carries the flux of what it stands for, so that ΣΦ_k is all of it, and
+//! lights share N by flux. The disc form d² + A/π in place of the paper's d⁴ removes the singularity without a tuned
+//! constant (glsl/lib/vpl.glsl). Light that is blocked on its way from y to x is counted all the same: that is the
+//! method's error, besides everything beyond one bounce.
+
+use ash::vk;
+
+use crate::frame::gbuffer::GBuffer;
+use crate::frame::light_set::LightSet;
+use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::graph::{Dependence, Graph};
+use crate::renderer::RsmSettings;
+use crate::shaders::rsm::{Gather, GatherPush, Scan, ScanPush, TileFlux, TileFluxPush, Vpls, VplsPush};
+
+/// Most work groups of the tile pass; each then takes several tiles.
+const MOST_TILE_GROUPS: u32 = 32768;
+
+/// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
+pub(crate) struct Rsm {
+    pub(crate) diffuse: ImageRef,
+    pub(crate) vpls: BufferRef<[f32; 4]>,
+}
+
+/// Declares the method's passes in the order in which they run.
+pub(crate) fn rsm(graph: &mut Graph<'_>, buffer: &GBuffer, set: &LightSet, lights: &LightViews, reflective: ReflectiveViews, settings: &RsmSettings) -> Rsm {
+    let tile_count = set.atlas.tiles.len() as u32;
+    let vpl_count = settings.vpls;
+    let tiles = graph.upload("rsm.tiles", &set.atlas.tiles, Dependence::LIGHTS);
+    let tile_fluxes = graph.buffer::<[f32; 4]>("rsm.tile_fluxes", tile_count as usize);
+    let flux_prefix = graph.buffer::<[f32; 4]>("rsm.flux_prefix", tile_count as usize + 1);
+    let vpls = graph.buffer::<[f32; 4]>("rsm.vpls", 2 * vpl_count as usize);
+    let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
+
+    let pass = TileFlux {
+        tiles: tiles.read(),
+        views: lights.views.clone(),
+        light_depth: lights.depth.sampled(),
+        light_normal: reflective.normal.sampled(),
+        light_flux: reflective.flux.sampled(),
+        tile_fluxes: tile_fluxes.write(),
+        push: TileFluxPush { tile_count },
+    };
+    graph.pass("diffuse/rsm/tile-flux", pass).note("tiles", u64::from(tile_count)).groups([tile_count.min(MOST_TILE_GROUPS), 1, 1]);
+
+    let pass = Scan { tile_fluxes: tile_fluxes.read(), flux_prefix: flux_prefix.write(), push: ScanPush { tile_count } };
+    graph.pass("diffuse/rsm/scan", pass).groups([1, 1, 1]);
+
+    let pass = Vpls {
+        tiles: tiles.read(),
+        views: lights.views.clone(),
+        light_depth: lights.depth.sampled(),
+        light_normal: reflective.normal.sampled(),
+        light_flux: reflective.flux.sampled(),
+        flux_prefix: flux_prefix.read(),
+        vpls: vpls.write(),
+        push: VplsPush { tile_count, vpl_count },
+    };
+    graph.pass("diffuse/rsm/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
+
+    let (specular, has_specular) = buffer.specular();
+    let pass = Gather {
+        camera: buffer.camera.clone(),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        specular: specular.sampled(),
+        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
+        diffuse: diffuse.write(),
+        push: GatherPush { vpl_count, has_specular },
+    };
+    let [width, height] = buffer.size;
+    let terms = u64::from(width) * u64::from(height) * u64::from(vpl_count);
+    graph.pass("diffuse/rsm/gather", pass).note("VPL terms", terms).groups([width.div_ceil(16), height.div_ceil(8), 1]);
+    Rsm { diffuse, vpls }
+}

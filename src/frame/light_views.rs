@@ -1,0 +1,134 @@
+//! Light views: shadow maps, and reflective shadow maps where a method asks for reflected flux (Dachsbacher & Stamminger
+//! 2005): depth, normal, flux by the exact solid angle of each texel, specular mask. All views of all lights share one
+//! atlas, drawn in one pass.
+
+use ash::vk;
+
+use super::geometry::{Attributes, DrawView, Geometry, draw_list};
+use super::light_set::LightSet;
+use super::scene_data::{DrawnInstance, SceneData};
+use crate::graph::bindings::{ImageRef, ReadBuffer};
+use crate::graph::{ClearColor, Dependence, Graph};
+use crate::shaders::{light_views, types};
+
+/// The lights and their views on the device.
+#[derive(Clone)]
+pub(crate) struct LightViews {
+    pub(crate) light_count: u32,
+    pub(crate) lights: ReadBuffer<types::Light>,
+    pub(crate) views: ReadBuffer<types::LightView>,
+    /// Reverse-Z depth of each view in its rectangle.
+    pub(crate) depth: ImageRef,
+}
+
+/// What the lights' texels reflect.
+#[derive(Clone, Copy)]
+pub(crate) struct ReflectiveViews {
+    /// The surface's own normal on the light's side, octahedral.
+    pub(crate) normal: ImageRef,
+    /// Reflected flux over the view's flux scale; alpha is the specular mask.
+    pub(crate) flux: ImageRef,
+}
+
+/// Declares the views; `reflective` asks for normals and flux besides depth.
+pub(crate) fn light_views(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, set: &LightSet, reflective: bool) -> (LightViews, Option<ReflectiveViews>) {
+    let size = set.atlas.size.map(|side| side.max(1));
+    let records: Vec<types::LightView> = set.atlas.views.iter().map(|view| view.record).collect();
+    let lights = graph.upload("light_views.lights", &set.lights, Dependence::LIGHTS);
+    let views = graph.upload("light_views.views", &records, Dependence::LIGHTS);
+    let made = LightViews {
+        light_count: lights.count() as u32,
+        lights: lights.read(),
+        views: views.read(),
+        depth: graph.image("light_views.depth", vk::Format::D32_SFLOAT, size),
+    };
+    let reflective = reflective.then(|| ReflectiveViews {
+        normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
+        flux: graph.image("light_views.flux", vk::Format::R16G16B16A16_SFLOAT, size),
+    });
+    let draw_views: Vec<DrawView> = (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();
+    match reflective {
+        Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
+        None => draw_depth(graph, data, geometry, &made, &draw_views),
+    }
+    (made, reflective)
+}
+
+fn draw_view(index: u32, view: &super::view_layout::LaidOutView) -> DrawView {
+    let [x, y] = view.record.rect_origin.map(i32::cast_unsigned);
+    let [width, height] = view.record.rect_size.map(i32::cast_unsigned);
+    let viewport = [x as f32, y as f32, view.full_size[0] as f32, view.full_size[1] as f32];
+    DrawView::new(&view.record.view_projection, Some((viewport, [x, y, width, height])), Some(index.to_le_bytes().to_vec()))
+}
+
+fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, views: &[DrawView]) {
+    let solid = |drawn: &DrawnInstance| !(drawn.masked && drawn.textured);
+    let depth = light_views::Depth {
+        instances: geometry.instances.clone(),
+        views: made.views.clone(),
+        push: light_views::DepthPush { view_index: 0 },
+    };
+    let list = draw_list(data, Attributes::Depth, views, solid);
+    let pass = graph.raster("light-views/depth", depth, Attributes::Depth.raster_state(data));
+    pass.note("views", views.len() as u64).depth(made.depth, Some(0.0)).draw(list);
+    if data.drawn.iter().all(solid) {
+        graph.skip("light-views/depth-masked", "no surface cut out by its alpha");
+        return;
+    }
+    let masked = light_views::DepthMasked {
+        instances: geometry.instances.clone(),
+        materials: geometry.materials.clone(),
+        material_textures: geometry.material_textures.clone(),
+        views: made.views.clone(),
+        textures: data.texture_kinds(|drawn| !solid(drawn)),
+        push: light_views::DepthMaskedPush { view_index: 0 },
+    };
+    let list = draw_list(data, Attributes::DepthMasked, views, |drawn| !solid(drawn));
+    let pass = graph.raster("light-views/depth-masked", masked, Attributes::DepthMasked.raster_state(data));
+    pass.depth(made.depth, None).draw(list);
+}
+
+fn draw_reflective(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, targets: ReflectiveViews, views: &[DrawView]) {
+    let plain = light_views::Reflective {
+        instances: geometry.instances.clone(),
+        materials: geometry.materials.clone(),
+        indices: geometry.indices.clone(),
+        positions: geometry.positions.clone(),
+        views: made.views.clone(),
+        lights: made.lights.clone(),
+        push: light_views::ReflectivePush { view_index: 0 },
+    };
+    let list = draw_list(data, Attributes::Plain, views, |drawn| !drawn.textured);
+    let pass = graph.raster("light-views/reflective", plain, Attributes::Plain.raster_state(data));
+    pass.note("views", views.len() as u64)
+        .depth(made.depth, Some(0.0))
+        .color(targets.normal, Some(ClearColor::Uint([0; 4])))
+        .color(targets.flux, Some(ClearColor::Float([0.0; 4])))
+        .draw(list);
+    if !data.textured() {
+        graph.skip("light-views/reflective-textured", "no textured surface");
+        return;
+    }
+    for (name, masked) in [("light-views/reflective-textured", false), ("light-views/reflective-masked", true)] {
+        let takes = |drawn: &DrawnInstance| drawn.textured && drawn.masked == masked;
+        if !data.drawn.iter().any(takes) {
+            graph.skip(name, if masked { "no surface cut out by its alpha" } else { "no opaque textured surface" });
+            continue;
+        }
+        let textured = light_views::ReflectiveTextured {
+            instances: geometry.instances.clone(),
+            materials: geometry.materials.clone(),
+            indices: geometry.indices.clone(),
+            positions: geometry.positions.clone(),
+            material_textures: geometry.material_textures.clone(),
+            views: made.views.clone(),
+            lights: made.lights.clone(),
+            textures: data.texture_kinds(takes),
+            alpha_mask: u32::from(masked),
+            push: light_views::ReflectiveTexturedPush { view_index: 0 },
+        };
+        let list = draw_list(data, Attributes::ReflectiveTextured, views, takes);
+        let pass = graph.raster(name, textured, Attributes::ReflectiveTextured.raster_state(data));
+        pass.depth(made.depth, None).color(targets.normal, None).color(targets.flux, None).draw(list);
+    }
+}

@@ -1,0 +1,56 @@
+//! The context: one Vulkan device, shared by the renderers on it.
+
+use std::sync::Arc;
+
+use super::Error;
+use crate::vulkan::{self, ContextOptions, Device, DeviceReport};
+
+/// A Vulkan device. Cloning shares it; it is destroyed with the last renderer on it.
+#[derive(Clone)]
+pub struct Context {
+    device: Arc<Device>,
+}
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// A sentence that says what to install, when there is no loader, no device or no validation layer; which devices
+    /// there are, when none matches; what the device lacks and what needs it, when it cannot be used.
+    pub fn new(options: &ContextOptions) -> Result<Context, Error> {
+        Ok(Context { device: Device::new(options)? })
+    }
+
+    /// All devices of this machine, usable or not.
+    ///
+    /// # Errors
+    /// Without a Vulkan loader.
+    pub fn devices() -> Result<Vec<DeviceReport>, Error> {
+        Ok(vulkan::devices()?)
+    }
+
+    /// The device in use.
+    pub fn device(&self) -> DeviceReport {
+        self.device.report().clone()
+    }
+
+    /// What the validation layer found so far: warnings and worse. Always empty without validation.
+    pub fn validation_messages(&self) -> Vec<String> {
+        self.device.messages()
+    }
+
+    /// Names and bytes of the device allocations that are alive. Empty once all renderers are gone.
+    pub fn live_allocations(&self) -> Vec<(String, u64)> {
+        self.device.live_allocations()
+    }
+
+    pub(crate) fn shared_device(&self) -> &Arc<Device> {
+        &self.device
+    }
+}
+
+impl std::fmt::Debug for Context {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Context").field("device", &self.device.report().name).finish()
+    }
+}

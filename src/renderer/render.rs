@@ -1,0 +1,151 @@
+//! The renderer: a scene and a request in, a frame out. Keeps on the device what still holds between frames.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::declare::declare;
+use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
+use crate::frame::light_set::LightSet;
+use crate::frame::scene_data::SceneData;
+use crate::graph::{Graph, GraphDescription, Store};
+use crate::scene::Scene;
+
+/// Makes frames with one set of settings on one device.
+///
+/// What a scene, its lights and the camera leave unchanged from one frame to the next is not made again. Any scene may be
+/// rendered at any time; changing between scenes uploads them anew.
+pub struct Renderer {
+    settings: Settings,
+    data: Option<SceneData>,
+    lights: LightSet,
+    store: Store,
+}
+
+impl Renderer {
+    /// A renderer on `context`'s device.
+    ///
+    /// # Errors
+    /// If the device has no memory left.
+    pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
+        Ok(Renderer { settings, data: None, lights: LightSet::default(), store: Store::new(context.shared_device())? })
+    }
+
+    /// The settings of the frames to come.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Replaces the settings.
+    pub fn set_settings(&mut self, settings: Settings) {
+        self.settings = settings;
+    }
+
+    /// Forgets all results, so that the next frame makes everything anew; for timings of whole frames. The scene stays on
+    /// the device.
+    pub fn invalidate(&mut self) {
+        self.store.invalidate();
+    }
+
+    /// Makes a frame of the scene as it is now.
+    ///
+    /// # Errors
+    /// A frame without pixels or beyond the device's limits, exhausted memory, a lost device. The last two name the last
+    /// pass that finished.
+    pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
+        let start = Instant::now();
+        self.prepare(scene, request)?;
+        let data = self.data.as_ref().expect("prepared above");
+        let mut graph = Graph::new(&mut self.store);
+        let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
+
+        let mut slots = Vec::new();
+        for &slot in &request.slots {
+            let made = declared.slot(slot);
+            if let (Some(image), false) = (made, request.read_back) {
+                graph.want(image);
+            }
+            slots.push((slot, made.filter(|_| request.read_back).map(|image| graph.read_back(image))));
+        }
+        let image = declared.image.filter(|_| request.image);
+        if let (Some(image), false) = (image, request.read_back) {
+            graph.want(image);
+        }
+        let image = image.filter(|_| request.read_back).map(|image| graph.read_back(image));
+        // Display values are of use to the host alone.
+        let display = declared.display.map(|display| graph.read_back_buffer(display));
+
+        let mut executed = graph.run(request.timing)?;
+        let size = request.size;
+        let mut frame = Frame { size, image: None, slots: BTreeMap::new(), display: None, timings: FrameTimings::default() };
+        frame.image = image.map(|read_back| color_image(size, &executed.take(read_back)));
+        if request.read_back {
+            for (slot, read_back) in slots {
+                let image = read_back.map_or_else(|| black(size), |read_back| color_image(size, &executed.take(read_back)));
+                frame.slots.insert(slot, image);
+            }
+        }
+        frame.display = display.map(|read_back| executed.take(read_back).chunks_exact(4).map(|word| [word[0], word[1], word[2]]).collect());
+        let mut memory_bytes = self.store.memory_by_piece();
+        memory_bytes.insert("scene".to_owned(), data.bytes());
+        frame.timings = FrameTimings {
+            timing: request.timing,
+            gpu_ms: executed.gpu_ms,
+            host_ms: start.elapsed().as_secs_f64() * 1e3,
+            pipeline_ms: executed.pipeline_ms,
+            passes: executed.passes,
+            memory_bytes,
+        };
+        Ok(frame)
+    }
+
+    /// The passes of the frame that `request` asks for, and which of them would be skipped and why. Nothing runs.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], as far as uploading the scene goes.
+    pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
+        self.prepare(scene, request)?;
+        let data = self.data.as_ref().expect("prepared above");
+        let mut graph = Graph::new(&mut self.store);
+        let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
+        for image in Slot::ALL.into_iter().filter(|slot| request.slots.contains(slot)).filter_map(|slot| declared.slot(slot)) {
+            graph.want(image);
+        }
+        if let Some(image) = declared.image.filter(|_| request.image) {
+            graph.want(image);
+        }
+        if let Some(display) = declared.display {
+            graph.want_buffer(display);
+        }
+        Ok(graph.describe())
+    }
+
+    /// Brings the scene and its lights up to date on the device.
+    fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<(), Error> {
+        let [width, height] = request.size;
+        if width == 0 || height == 0 {
+            return Err(Error::EmptyFrame(width, height));
+        }
+        let device = self.store.device().clone();
+        let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
+        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, device.limits().max_image_dimension2_d);
+        self.data = Some(data);
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Renderer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Renderer").field("settings", &self.settings).finish_non_exhaustive()
+    }
+}
+
+/// From four floats a pixel.
+fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {
+    let float = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let pixels = bytes.chunks_exact(16).map(|texel| [float(&texel[0..4]), float(&texel[4..8]), float(&texel[8..12])]).collect();
+    ColorImage { size, pixels }
+}
+
+fn black(size: [u32; 2]) -> ColorImage {
+    ColorImage { size, pixels: vec![[0.0; 3]; size[0] as usize * size[1] as usize] }
+}
