@@ -202,6 +202,45 @@ fn what_an_accessor_claims_is_checked_before_it_is_allocated() {
 }
 
 #[test]
+fn many_primitives_may_share_vertices_of_which_each_keeps_few() {
+    // Kept whole by each of 200 primitives, 100 kB of vertices would be more than the file justifies.
+    let positions: Vec<[f32; 3]> = (0..9000)
+        .map(|vertex| [vertex as f32, (vertex % 2) as f32, 0.0])
+        .collect();
+    for indexed in [true, false] {
+        let mut file = File::with_positions(&positions);
+        if indexed {
+            let indices = file.accessor(&[0, 2, 1], 5121, "SCALAR", 3);
+            file.primitive()["indices"] = json!(indices);
+        }
+        let primitive = file.primitive().clone();
+        file.json["meshes"][0]["primitives"] = json!(vec![primitive; 200]);
+        match file.load() {
+            Ok(scene) => assert!(indexed && scene.meshes()[0].primitives[199].positions.len() == 3),
+            Err(error) => assert!(
+                !indexed && error.to_string().contains("16 times"),
+                "{error}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn skins_and_morph_targets_are_warned_of_once() {
+    let mut file = File::triangle();
+    let targets = json!([{"POSITION": 0}]);
+    file.primitive()["targets"] = targets;
+    file.json["skins"] = json!([{"joints": [0]}]);
+    file.json["nodes"] = json!([{"mesh": 0, "skin": 0, "children": [1]}, {"mesh": 0, "skin": 0}]);
+    let scene = file.load().expect("the static mesh is shown");
+    assert_eq!(scene.instances().len(), 2);
+    let [morphs, skins] = &scene.warnings[..] else {
+        panic!("{:?}", scene.warnings)
+    };
+    assert!(morphs.contains("morph") && skins.contains("skins"));
+}
+
+#[test]
 fn indices_out_of_range_name_mesh_and_primitive() {
     let mut file = File::triangle();
     let indices = file.accessor(&[0, 1, 3], 5121, "SCALAR", 3);

@@ -81,7 +81,7 @@ fn each_change_counts_up_what_it_changes() {
             near: 0.1,
         },
     };
-    let camera = scene.add_camera(camera);
+    let camera = scene.add_camera(camera).expect("it is sound");
     let light = Light {
         name: String::new(),
         kind: LightKind::Point,
@@ -325,6 +325,62 @@ fn what_contradicts_itself_is_not_taken() {
     );
     assert_eq!(scene.revisions(), before);
     assert_eq!(scene.instances().len(), 2);
+}
+
+/// A closed unit cube around the origin whose fronts look outwards or inwards.
+fn cube(inwards: bool) -> Scene {
+    let mut scene = Scene::empty("cube");
+    let material = scene
+        .add_material(Material {
+            double_sided: true,
+            ..Material::default()
+        })
+        .expect("it is sound");
+    let mesh = scene.add_mesh(square(material)).expect("it is sound");
+    let turn = DAffine3::from_rotation_y(if inwards { PI } else { 0.0 });
+    let sides = (0..4).map(|side| DQuat::from_rotation_y(f64::from(side) * PI / 2.0));
+    let ends = [PI / 2.0, -PI / 2.0].map(DQuat::from_rotation_x);
+    for rotation in sides.chain(ends) {
+        let local =
+            DAffine3::from_quat(rotation) * DAffine3::from_translation(DVec3::Z * 0.5) * turn;
+        scene
+            .add_node(Node {
+                mesh: Some(mesh),
+                local,
+                ..Node::default()
+            })
+            .expect("it is sound");
+    }
+    scene
+}
+
+#[test]
+fn objects_are_seen_from_outside_and_rooms_from_inside() {
+    for inwards in [false, true] {
+        let mut scene = cube(inwards);
+        let view = scene.camera_view(None).expect("a view is always found");
+        let bounds = scene.bounds().expect("it has triangles");
+        let eye = view.world.translation;
+        let inside = eye.cmpgt(bounds.min).all() && eye.cmplt(bounds.max).all();
+        assert_eq!(inside, inwards, "{view:?}");
+        // The same, larger and far away, is seen the same way.
+        for node in 0..scene.nodes().len() {
+            let far = DAffine3::from_translation(DVec3::new(1e6, 0.0, -3e5))
+                * DAffine3::from_scale(DVec3::splat(1e3));
+            let local = far * scene.nodes()[node].local;
+            scene
+                .set_local_transform(NodeId(node), local)
+                .expect("it exists");
+        }
+        let far = scene
+            .camera_view(None)
+            .expect("a view is always found")
+            .world;
+        assert!(
+            ((far.translation - DVec3::new(1e6, 0.0, -3e5)) / 1e3 - eye).length() < 1e-6,
+            "{far:?}"
+        );
+    }
 }
 
 fn total_power(samples: &[EmitterSample]) -> [f64; 3] {
