@@ -110,7 +110,11 @@ fn inside(bounds: &Bounds, radius: f64) -> CameraView {
     let size = bounds.size();
     // A square room is seen along z, whatever the rounding of its sizes.
     let along_x = size.x > size.z * 1.001;
-    let axis = if along_x { DVec3::X * size.x } else { DVec3::Z * size.z };
+    let axis = if along_x {
+        DVec3::X * size.x
+    } else {
+        DVec3::Z * size.z
+    };
     let middle = bounds.center() - DVec3::Y * 0.1 * size.y;
     CameraView::look_at(
         middle + axis * 0.35,
