@@ -1,10 +1,9 @@
-//! Scenes built in memory: what changes are counted, what emissive surfaces come to, how lights are written.
+//! Scenes built in memory: what changes are counted, what emissive surfaces come to.
 
 use glam::{DAffine3, DQuat, DVec3};
 use irradia::scene::{
-    Bounds, Camera, EmitterSample, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node,
-    NodeId, Primitive, Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef,
-    Wrap, parse_sky,
+    Bounds, Camera, EmitterSample, Light, LightKind, Material, MaterialId, Mesh, Node, NodeId,
+    Primitive, Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef, Wrap,
 };
 use std::f64::consts::PI;
 
@@ -81,7 +80,7 @@ fn each_change_counts_up_what_it_changes() {
             near: 0.1,
         },
     };
-    let camera = scene.add_camera(camera);
+    let camera = scene.add_camera(camera).expect("it is sound");
     let light = Light {
         name: String::new(),
         kind: LightKind::Point,
@@ -327,6 +326,62 @@ fn what_contradicts_itself_is_not_taken() {
     assert_eq!(scene.instances().len(), 2);
 }
 
+/// A closed unit cube around the origin whose fronts look outwards or inwards.
+fn cube(inwards: bool) -> Scene {
+    let mut scene = Scene::empty("cube");
+    let material = scene
+        .add_material(Material {
+            double_sided: true,
+            ..Material::default()
+        })
+        .expect("it is sound");
+    let mesh = scene.add_mesh(square(material)).expect("it is sound");
+    let turn = DAffine3::from_rotation_y(if inwards { PI } else { 0.0 });
+    let sides = (0..4).map(|side| DQuat::from_rotation_y(f64::from(side) * PI / 2.0));
+    let ends = [PI / 2.0, -PI / 2.0].map(DQuat::from_rotation_x);
+    for rotation in sides.chain(ends) {
+        let local =
+            DAffine3::from_quat(rotation) * DAffine3::from_translation(DVec3::Z * 0.5) * turn;
+        scene
+            .add_node(Node {
+                mesh: Some(mesh),
+                local,
+                ..Node::default()
+            })
+            .expect("it is sound");
+    }
+    scene
+}
+
+#[test]
+fn objects_are_seen_from_outside_and_rooms_from_inside() {
+    for inwards in [false, true] {
+        let mut scene = cube(inwards);
+        let view = scene.camera_view(None).expect("a view is always found");
+        let bounds = scene.bounds().expect("it has triangles");
+        let eye = view.world.translation;
+        let inside = eye.cmpgt(bounds.min).all() && eye.cmplt(bounds.max).all();
+        assert_eq!(inside, inwards, "{view:?}");
+        // The same, larger and far away, is seen the same way.
+        for node in 0..scene.nodes().len() {
+            let far = DAffine3::from_translation(DVec3::new(1e6, 0.0, -3e5))
+                * DAffine3::from_scale(DVec3::splat(1e3));
+            let local = far * scene.nodes()[node].local;
+            scene
+                .set_local_transform(NodeId(node), local)
+                .expect("it exists");
+        }
+        let far = scene
+            .camera_view(None)
+            .expect("a view is always found")
+            .world;
+        assert!(
+            ((far.translation - DVec3::new(1e6, 0.0, -3e5)) / 1e3 - eye).length() < 1e-6,
+            "{far:?}"
+        );
+    }
+}
+
 fn total_power(samples: &[EmitterSample]) -> [f64; 3] {
     std::array::from_fn(|channel| {
         samples
@@ -490,93 +545,4 @@ fn emissive_textures_weigh_the_power() {
         .expect("it is sound");
     // A few texels a triangle are read, so the half is met roughly.
     assert_close(total_power(&scene.emitter_samples(10))[0], 0.5 * PI, 0.15);
-}
-
-#[test]
-fn suns_stand_where_their_angles_say() {
-    let cases = [
-        ("sun:0,0", DVec3::Z),       // in the north, hence shining south
-        ("sun:90,0", DVec3::NEG_X),  // in the east
-        ("sun:180,0", DVec3::NEG_Z), // in the south
-        ("sun:12,90", DVec3::NEG_Y), // overhead
-        ("sun:90,45", DVec3::new(-1.0, -1.0, 0.0).normalize()),
-    ];
-    for (spec, direction) in cases {
-        let parsed = LightSpec::parse(spec).expect(spec);
-        assert!(
-            (parsed.direction - direction).length() < 1e-9,
-            "{spec}: {}",
-            parsed.direction
-        );
-        assert_eq!(parsed.light.kind, LightKind::Directional);
-        assert_eq!(parsed.light.intensity, [PI as f32; 3], "its default");
-    }
-}
-
-#[test]
-fn lights_written_out_are_placed_as_written() {
-    let mut scene = Scene::empty("lights");
-    for spec in ["sun:90,45,2", "point:1,2,3,4:5:6", "spot:1,2,3,0,-2,0,30,7"] {
-        scene
-            .add_light_spec(&LightSpec::parse(spec).expect(spec))
-            .expect(spec);
-    }
-    let [sun, point, spot] = &scene.placed_lights()[..] else {
-        panic!("three lights")
-    };
-    assert_eq!(sun.intensity, [2.0; 3]);
-    assert!(
-        (sun.direction - DVec3::new(-1.0, -1.0, 0.0).normalize()).length() < 1e-9,
-        "{}",
-        sun.direction
-    );
-    assert_eq!(
-        (point.position, point.intensity),
-        (DVec3::new(1.0, 2.0, 3.0), [4.0, 5.0, 6.0])
-    );
-    assert!(
-        (spot.direction - DVec3::NEG_Y).length() < 1e-9,
-        "{}",
-        spot.direction
-    );
-    let LightKind::Spot {
-        inner_angle,
-        outer_angle,
-    } = spot.kind
-    else {
-        panic!("a spot")
-    };
-    assert_close(outer_angle.into(), PI / 6.0, 1e-6);
-    assert_close(inner_angle.into(), 0.9 * PI / 6.0, 1e-6);
-    assert_eq!(scene.facts().punctual_lights, 3);
-    assert_eq!(scene.revisions().geometry, 0);
-}
-
-#[test]
-fn lights_that_cannot_be_read_say_how_to_write_them() {
-    for spec in [
-        "",
-        "moon:1,2",
-        "sun",
-        "sun:1",
-        "sun:a,2",
-        "sun:1,2,-3",
-        "sun:1,2,3,4",
-        "point:1,2,3",
-        "point:1,2,3,1:2",
-        "point:1,2,nan,1",
-        "spot:0,0,0,0,0,0,30,1",
-        "spot:0,0,0,0,1,0,0,1",
-        "spot:0,0,0,0,1,0,91,1",
-        "spot:0,0,0,0,1,0,30,inf",
-    ] {
-        let sentence = LightSpec::parse(spec).expect_err(spec);
-        assert!(sentence.contains("write "), "{spec}: {sentence}");
-    }
-    assert!(LightSpec::parse("spot:0,0,0,0,1,0,90,1").is_ok());
-    assert_eq!(parse_sky("1,2.5,0"), Ok([1.0, 2.5, 0.0]));
-    assert_eq!(parse_sky("0.5"), Ok([0.5; 3]));
-    for spec in ["", "1,2", "1,2,-3", "1,2,x", "1,2,3,4"] {
-        assert!(parse_sky(spec).is_err(), "{spec}");
-    }
 }

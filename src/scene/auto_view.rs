@@ -108,7 +108,9 @@ fn outside(bounds: &Bounds, radius: f64, towards_eye: DVec3, up: DVec3) -> Camer
 /// Looks along the longer horizontal axis from near its positive end, a little below the middle of the room.
 fn inside(bounds: &Bounds, radius: f64) -> CameraView {
     let size = bounds.size();
-    let axis = if size.x > size.z {
+    // A square room is seen along z, whatever the rounding of its sizes.
+    let along_x = size.x > size.z * 1.001;
+    let axis = if along_x {
         DVec3::X * size.x
     } else {
         DVec3::Z * size.z

@@ -3,6 +3,7 @@
 use super::world::Scene;
 use super::{CameraId, NodeId, SceneError, auto_view};
 use glam::{DAffine3, DMat3, DVec3};
+use std::f64::consts::PI;
 
 /// A camera looks along the local -Z of the node that places it, +Y up.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +37,49 @@ pub enum Projection {
         /// Farthest distance seen, in metres, above `near`.
         far: f64,
     },
+}
+
+impl Camera {
+    /// Says which number of the projection is out of range, if any is.
+    pub(super) fn fault(&self) -> Option<String> {
+        let fault = match self.projection {
+            Projection::Perspective {
+                vertical_fov,
+                aspect,
+                near,
+            } => {
+                if !(vertical_fov > 0.0 && vertical_fov < PI) {
+                    format!("its vertical angle of {vertical_fov} rad is not between 0 and π")
+                } else if !(near > 0.0 && near.is_finite()) {
+                    format!("its near distance of {near} is not above 0")
+                } else if !aspect.is_none_or(|aspect| aspect > 0.0 && aspect.is_finite()) {
+                    format!("its aspect ratio {aspect:?} is not above 0")
+                } else {
+                    return None;
+                }
+            }
+            Projection::Orthographic {
+                half_width,
+                half_height,
+                near,
+                far,
+            } => {
+                if ![half_width, half_height, near, far]
+                    .iter()
+                    .all(|length| length.is_finite())
+                {
+                    "a length of its projection is not finite".to_owned()
+                } else if half_width == 0.0 || half_height == 0.0 {
+                    "it shows an area without width or height".to_owned()
+                } else if !(near >= 0.0 && far > near) {
+                    format!("its depth from {near} to {far} is empty or behind it")
+                } else {
+                    return None;
+                }
+            }
+        };
+        Some(fault)
+    }
 }
 
 /// A camera in the world.

@@ -114,17 +114,22 @@ impl Scene {
     }
 
     /// Adds a camera; a node must place it before one can look through it.
-    pub fn add_camera(&mut self, camera: Camera) -> CameraId {
+    ///
+    /// # Errors
+    /// [`SceneError::InvalidObject`] if its projection is out of range.
+    pub fn add_camera(&mut self, camera: Camera) -> Result<CameraId, SceneError> {
+        self.check_camera(&camera)?;
         self.cameras.push(camera);
-        CameraId(self.cameras.len() - 1)
+        Ok(CameraId(self.cameras.len() - 1))
     }
 
     /// Replaces a camera.
     ///
     /// # Errors
-    /// [`SceneError::UnknownId`].
+    /// As [`Scene::add_camera`]; [`SceneError::UnknownId`].
     pub fn set_camera(&mut self, id: CameraId, camera: Camera) -> Result<(), SceneError> {
         self.check("camera", id.0, self.cameras.len())?;
+        self.check_camera(&camera)?;
         self.revisions.camera += u64::from(self.cameras[id.0] != camera);
         self.cameras[id.0] = camera;
         Ok(())
@@ -157,6 +162,12 @@ impl Scene {
         }
         material.fault().map_or(Ok(()), |fault| {
             Err(self.invalid("material", &material.name, fault))
+        })
+    }
+
+    fn check_camera(&self, camera: &Camera) -> Result<(), SceneError> {
+        camera.fault().map_or(Ok(()), |fault| {
+            Err(self.invalid("camera", &camera.name, fault))
         })
     }
 

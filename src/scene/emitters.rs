@@ -11,8 +11,8 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Barycentric coordinates at which an emissive texture is read to estimate its mean over a triangle: the centroids of the
-/// four and of the sixteen equal parts would cost more and say little more.
+/// Barycentric coordinates at which an emissive texture is read to estimate its mean over a triangle: the centroid, the
+/// corners and the middles of the edges, those drawn inwards.
 const TEXTURE_POINTS: [[f32; 3]; 7] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
     [0.8, 0.1, 0.1],
@@ -57,11 +57,92 @@ impl Emitter {
         0.2126 * self.power[0] + 0.7152 * self.power[1] + 0.0722 * self.power[2]
     }
 
+    fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
+    }
+
     fn point(&self, u: f64, v: f64) -> DVec3 {
         // Uniform in area (Osada et al. 2002).
         let [a, b, c] = self.corners;
         let root = u.sqrt();
         a * (1.0 - root) + b * (root * (1.0 - v)) + c * (root * v)
+    }
+}
+
+/// Where in its interval an emitter is placed: the middle, but for a hair, so that rounding cannot carry an emitter across
+/// the border between two triangles of equal power.
+const MIDDLE: f64 = 0.5 - 1e-6;
+
+/// All emissive triangles in a row, each as long as its power, cut into `count` equal intervals.
+struct Row {
+    emitters: Vec<Emitter>,
+    /// Where in the row each triangle ends.
+    ends: Vec<f64>,
+    /// Length of an interval.
+    interval: f64,
+}
+
+impl Row {
+    fn new(emitters: Vec<Emitter>, count: usize) -> Row {
+        let running_sum = |sum: &mut f64, emitter: &Emitter| {
+            *sum += emitter.weight();
+            Some(*sum)
+        };
+        let ends: Vec<f64> = emitters.iter().scan(0.0, running_sum).collect();
+        let interval = ends.last().copied().unwrap_or(0.0) / count as f64;
+        Row {
+            emitters,
+            ends,
+            interval,
+        }
+    }
+
+    /// The triangle at a place in the row.
+    fn at(&self, place: f64) -> usize {
+        self.ends
+            .partition_point(|&end| end <= place)
+            .min(self.ends.len() - 1)
+    }
+
+    fn start(&self, index: usize) -> f64 {
+        if index == 0 {
+            0.0
+        } else {
+            self.ends[index - 1]
+        }
+    }
+
+    /// Power and area of all pieces of triangles in an interval.
+    fn flux(&self, sample: usize) -> ([f64; 3], f64) {
+        let (low, high) = (
+            self.interval * sample as f64,
+            self.interval * (sample + 1) as f64,
+        );
+        let (mut power, mut area) = ([0.0; 3], 0.0);
+        for index in self.at(low)..=self.at(high) {
+            let emitter = &self.emitters[index];
+            let overlap = self.ends[index].min(high) - self.start(index).max(low);
+            let share = overlap.max(0.0) / emitter.weight();
+            power = std::array::from_fn(|channel| power[channel] + share * emitter.power[channel]);
+            area += share * emitter.area;
+        }
+        (power, area)
+    }
+
+    /// The triangle at an interval's middle, and a point in it. Where several middles fall into one triangle, their places in
+    /// the row and a radical inverse make a Hammersley set, which covers the triangle evenly.
+    fn place(&self, sample: usize) -> (&Emitter, DVec3) {
+        let place = (sample as f64 + MIDDLE) * self.interval;
+        let index = self.at(place);
+        let (start, length) = (self.start(index), self.emitters[index].weight());
+        let rank = sample as f64 - (start / self.interval - MIDDLE).ceil().max(0.0);
+        let neighbours = (length / self.interval).ceil().clamp(1.0, 1e9) as u32;
+        let u = ((place - start) / length).clamp(0.0, 1.0);
+        let v =
+            radical_inverse(rank.max(0.0) as u32) + 0.5 / f64::from(neighbours.next_power_of_two());
+        let emitter = &self.emitters[index];
+        (emitter, emitter.point(u, v.min(1.0)))
     }
 }
 
@@ -74,60 +155,27 @@ impl Scene {
             .iter()
             .filter(|it| self.material_of(it).emits())
             .collect();
-        let rows: Vec<Vec<Emitter>> = emissive
+        let emitters: Vec<Vec<Emitter>> = emissive
             .par_iter()
             .map(|it| emitters(self, it, self.primitive(it), self.material_of(it)))
             .collect();
-        let row: Vec<Emitter> = rows.into_iter().flatten().collect();
-        let mut ends = Vec::with_capacity(row.len());
-        let total = row.iter().fold(0.0, |sum, emitter| {
-            ends.push(sum + emitter.weight());
-            sum + emitter.weight()
-        });
-        if count == 0 || total <= 0.0 || !total.is_finite() {
+        let row = Row::new(emitters.into_iter().flatten().collect(), count);
+        if !(row.interval > 0.0 && row.interval.is_finite()) {
             return Vec::new();
         }
-        let start = |index: usize| if index == 0 { 0.0 } else { ends[index - 1] };
-        let at = |place: f64| ends.partition_point(|&end| end <= place).min(row.len() - 1);
-        let middle = |sample: usize| (sample as f64 + 0.5) / count as f64 * total;
-        (0..count)
-            .map(|sample| {
-                let (low, high) = (
-                    total * (sample as f64 / count as f64),
-                    total * ((sample + 1) as f64 / count as f64),
-                );
-                let (mut power, mut area) = ([0.0; 3], 0.0);
-                for index in at(low)..=at(high) {
-                    let share = (ends[index].min(high) - start(index).max(low)).max(0.0)
-                        / row[index].weight();
-                    if share.is_finite() {
-                        power = std::array::from_fn(|channel| {
-                            power[channel] + share * row[index].power[channel]
-                        });
-                        area += share * row[index].area;
-                    }
-                }
-                // Within a triangle that several middles fall into, their places in the row and a radical inverse make a
-                // Hammersley set, which covers it evenly.
-                let index = at(middle(sample));
-                let (first, length) = (start(index), ends[index] - start(index));
-                let samples_before = (first / total * count as f64 - 0.5).ceil().max(0.0);
-                let rank = (sample as f64 - samples_before).max(0.0) as u32;
-                let neighbours = (length / total * count as f64).ceil().max(1.0) as u32;
-                let u = ((middle(sample) - first) / length).clamp(0.0, 1.0);
-                let v = radical_inverse(rank) + 0.5 / f64::from(neighbours.next_power_of_two());
-                let emitter = &row[index];
-                let [a, b, c] = emitter.corners;
-                EmitterSample {
-                    position: emitter.point(u, v.min(1.0)),
-                    normal: (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y),
-                    two_sided: emitter.two_sided,
-                    power: power.map(|channel| channel as f32),
-                    area,
-                    node: emitter.node,
-                }
-            })
-            .collect()
+        let sample = |sample| {
+            let (power, area) = row.flux(sample);
+            let (emitter, position) = row.place(sample);
+            EmitterSample {
+                position,
+                normal: emitter.normal(),
+                two_sided: emitter.two_sided,
+                power: power.map(|channel| channel as f32),
+                area,
+                node: emitter.node,
+            }
+        };
+        (0..count).map(sample).collect()
     }
 }
 

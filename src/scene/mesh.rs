@@ -103,7 +103,7 @@ impl Primitive {
         {
             return Some(format!("the position of vertex {vertex} is not finite"));
         }
-        if self.indices.len() % 3 != 0 {
+        if !self.indices.len().is_multiple_of(3) {
             return Some(format!(
                 "{} indices do not make whole triangles",
                 self.indices.len()

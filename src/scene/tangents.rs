@@ -110,17 +110,17 @@ fn generate(primitive: &mut Primitive, texture: TextureRef) {
     let mut first = vec![NONE; primitive.positions.len()];
     let (mut next, mut sources, mut new_tangents): (Vec<u32>, Vec<u32>, Vec<[f32; 4]>) =
         Default::default();
-    for corner in 0..corner_count {
+    for (corner, tangent) in tangents.into_iter().enumerate() {
         let source = primitive.indices[corner];
         let mut vertex = first[source as usize];
-        while vertex != NONE && new_tangents[vertex as usize] != tangents[corner] {
+        while vertex != NONE && new_tangents[vertex as usize] != tangent {
             vertex = next[vertex as usize];
         }
         if vertex == NONE {
             vertex = sources.len() as u32;
             next.push(std::mem::replace(&mut first[source as usize], vertex));
             sources.push(source);
-            new_tangents.push(tangents[corner]);
+            new_tangents.push(tangent);
         }
         primitive.indices[corner] = vertex;
     }

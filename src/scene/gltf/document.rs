@@ -9,15 +9,14 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-/// One element of a top-level array: what it says, or why it says nothing.
-pub(super) struct Element<T>(Result<T, String>);
+/// One element of a top-level array: what it says, or why it says nothing. Boxed, so that an array of faults is small.
+pub(super) struct Element<T>(Result<Box<T>, Box<str>>);
 
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Element<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = Value::deserialize(deserializer)?;
-        Ok(Element(
-            serde_json::from_value(value).map_err(|error| error.to_string()),
-        ))
+        let element = serde_json::from_value(value).map(Box::new);
+        Ok(Element(element.map_err(|error| error.to_string().into())))
     }
 }
 
@@ -30,10 +29,12 @@ pub(super) fn get<'a, T>(
     match section.get(index) {
         Some(Element(Ok(value))) => Ok(value),
         Some(Element(Err(fault))) => Err(format!("{kind} {index} is not valid glTF ({fault})")),
-        None => Err(format!(
-            "{kind} {index} is referred to, but the file has {} of that kind",
-            section.len()
-        )),
+        None => {
+            let count = section.len();
+            Err(format!(
+                "{kind} {index} is referred to, but the file has {count} of that kind"
+            ))
+        }
     }
 }
 
@@ -105,7 +106,6 @@ pub(super) struct Node {
     pub(super) name: Option<String>,
     #[serde(default)]
     pub(super) children: Vec<usize>,
-    /// Boxed, since few nodes have one and files may have millions of nodes.
     pub(super) matrix: Option<Box<[f64; 16]>>,
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,

@@ -185,7 +185,11 @@ fn unit(value: f32) -> f32 {
     at_least_zero(value).min(1.0)
 }
 
-/// Negative values and overflowing ones are cut off.
+/// Negative values are cut off, overflowing ones brought back, and what is not a number (0 times infinity) becomes 0.
 fn at_least_zero(value: f32) -> f32 {
-    value.max(0.0).min(f32::MAX)
+    if value > 0.0 {
+        value.min(f32::MAX)
+    } else {
+        0.0
+    }
 }

@@ -8,7 +8,6 @@ use crate::scene::{Camera, CameraId, Light, LightId, LightKind, MeshId, Node, No
 use glam::{DAffine3, DMat4, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
-use std::f64::consts::PI;
 
 /// A node of the active scene; `parent` is its place in the list of branches, which has parents before children.
 pub(super) struct Branch<'a> {
@@ -125,20 +124,20 @@ impl<'a> Loader<'a> {
     }
 
     fn add_camera(&mut self, index: usize) -> Option<CameraId> {
-        let camera = get(&self.document.cameras, index, "camera").and_then(|camera| {
-            let projection = convert_projection(camera).ok_or("its projection is out of range")?;
-            Ok(Camera {
+        let added = get(&self.document.cameras, index, "camera").and_then(|camera| {
+            let projection = convert_projection(camera)
+                .ok_or("its projection is missing or of no known kind")?;
+            let camera = Camera {
                 name: camera.name.clone().unwrap_or_default(),
                 projection,
-            })
+            };
+            self.scene
+                .add_camera(camera)
+                .map_err(|error| error.to_string())
         });
-        match camera {
-            Ok(camera) => Some(self.scene.add_camera(camera)),
-            Err(fault) => {
-                self.warn(format!("camera {index} is left out: {fault}"));
-                None
-            }
-        }
+        added
+            .map_err(|fault| self.warn(format!("camera {index} is left out: {fault}")))
+            .ok()
     }
 
     /// Adds all animations, without the channels that move nothing in the active scene or are not valid.
@@ -299,27 +298,23 @@ fn convert_light(light: &document::Light) -> Result<Light, String> {
 
 fn convert_projection(camera: &document::Camera) -> Option<Projection> {
     match camera.kind.as_str() {
-        "perspective" => {
-            let perspective = camera.perspective.as_ref()?;
-            let valid = perspective.yfov > 0.0 && perspective.yfov < PI && perspective.znear > 0.0;
-            valid.then_some(Projection::Perspective {
-                vertical_fov: perspective.yfov,
-                aspect: perspective.aspect_ratio.filter(|&aspect| aspect > 0.0),
-                near: perspective.znear,
-            })
-        }
-        "orthographic" => {
-            let orthographic = camera.orthographic.as_ref()?;
-            let valid = orthographic.xmag != 0.0
-                && orthographic.ymag != 0.0
-                && orthographic.zfar > orthographic.znear.max(0.0);
-            valid.then_some(Projection::Orthographic {
-                half_width: orthographic.xmag,
-                half_height: orthographic.ymag,
-                near: orthographic.znear.max(0.0),
-                far: orthographic.zfar,
-            })
-        }
+        "perspective" => camera
+            .perspective
+            .as_ref()
+            .map(|it| Projection::Perspective {
+                vertical_fov: it.yfov,
+                aspect: it.aspect_ratio,
+                near: it.znear,
+            }),
+        "orthographic" => camera
+            .orthographic
+            .as_ref()
+            .map(|it| Projection::Orthographic {
+                half_width: it.xmag,
+                half_height: it.ymag,
+                near: it.znear,
+                far: it.zfar,
+            }),
         _ => None,
     }
 }
