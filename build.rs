@@ -31,7 +31,8 @@ fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
     let compiler = Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))?;
     let mut programs: BTreeMap<(String, String), Program> = BTreeMap::new();
     for path in shader_files(root)? {
-        let part = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
+        let part =
+            |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
         let (piece, pass) = (part(path.parent().and_then(Path::file_name)), part(path.file_stem()));
         let (kind, stage_kind) = match part(path.extension()).as_str() {
             "comp" => ("Compute", ShaderKind::Compute),
@@ -55,7 +56,9 @@ fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
     }
     let mut programs: Vec<Program> = programs.into_values().collect();
     for program in &mut programs {
-        program.stages.sort_by_key(|stage| ["Vertex", "Geometry", "Fragment", "Compute"].iter().position(|kind| *kind == stage.kind));
+        program.stages.sort_by_key(|stage| {
+            ["Vertex", "Geometry", "Fragment", "Compute"].iter().position(|kind| *kind == stage.kind)
+        });
     }
     let source = generate::generate(&programs)?;
     fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
@@ -84,7 +87,8 @@ fn compile(compiler: &Compiler, root: &Path, path: &Path, source: &str, kind: Sh
     options.set_warnings_as_errors();
     options.set_include_callback(|name, _, from, _| {
         let path = root.join(name);
-        let content = fs::read_to_string(&path).map_err(|error| format!("{from} includes {}: {error}", path.display()))?;
+        let content =
+            fs::read_to_string(&path).map_err(|error| format!("{from} includes {}: {error}", path.display()))?;
         Ok(ResolvedInclude { resolved_name: path.display().to_string(), content })
     });
     let compiled = compiler.compile_into_spirv(source, kind, &path.display().to_string(), "main", Some(&options));
@@ -97,7 +101,10 @@ fn compile(compiler: &Compiler, root: &Path, path: &Path, source: &str, kind: Sh
 /// The first sentence of the comment that a shader starts with.
 fn summary(source: &str) -> Option<String> {
     let lines = source.lines().skip_while(|line| !line.trim_start().starts_with("//"));
-    let comment: Vec<&str> = lines.take_while(|line| line.trim_start().starts_with("//")).map(|line| line.trim().trim_start_matches('/').trim()).collect();
+    let comment: Vec<&str> = lines
+        .take_while(|line| line.trim_start().starts_with("//"))
+        .map(|line| line.trim().trim_start_matches('/').trim())
+        .collect();
     let text = comment.join(" ");
     let end = text.find(". ").map_or(text.len(), |end| end + 1);
     let sentence = text[..end].trim().replace('[', "\\[").replace(']', "\\]").replace('<', "\\<");

@@ -33,7 +33,10 @@ pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
             for (name, found) in &stage.stage.structs {
                 match structs.get(name) {
                     Some(known) if known != found => {
-                        return Err(format!("struct {name} in glsl/{}/{} differs from the one of the same name elsewhere", program.piece, program.pass));
+                        return Err(format!(
+                            "struct {name} in glsl/{}/{} differs from the one of the same name elsewhere",
+                            program.piece, program.pass
+                        ));
                     }
                     Some(_) => {}
                     None => drop(structs.insert(name.clone(), found.clone())),
@@ -52,9 +55,10 @@ pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
         pieces.entry(&program.piece).or_default().push(program);
     }
     for (piece, programs) in pieces {
-        writeln!(out, "/// The programs of `glsl/{piece}/`.\npub mod {piece} {{\nuse super::types;\nuse crate::graph::bindings::*;\nuse crate::vulkan::program as vp;").ok();
+        writeln!(out, "/// The programs of `glsl/{piece}/`.\npub mod {piece} {{\n#[allow(unused_imports, reason = \"a piece may share no struct\")]\nuse super::types;\nuse crate::graph::bindings::*;\nuse crate::vulkan::program as vp;").ok();
         for program in programs {
-            write_program(&mut out, program, &structs).map_err(|error| format!("glsl/{piece}/{}: {error}", program.pass))?;
+            write_program(&mut out, program, &structs)
+                .map_err(|error| format!("glsl/{piece}/{}: {error}", program.pass))?;
         }
         out.push_str("}\n");
     }
@@ -73,7 +77,9 @@ fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String,
         }
         for binding in &stage.bindings {
             match bindings.iter().find(|known| (known.set, known.binding) == (binding.set, binding.binding)) {
-                Some(known) if known != binding => return Err(format!("{} and {} share a binding", known.name, binding.name)),
+                Some(known) if known != binding => {
+                    return Err(format!("{} and {} share a binding", known.name, binding.name));
+                }
                 Some(_) => {}
                 None => bindings.push(binding.clone()),
             }
@@ -84,10 +90,19 @@ fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String,
             }
             push = Some(block.clone());
         }
-        constants.extend(stage.constants.iter().filter(|constant| !constants.iter().any(|known| known.id == constant.id)).cloned().collect::<Vec<_>>());
+        constants.extend(
+            stage
+                .constants
+                .iter()
+                .filter(|constant| !constants.iter().any(|known| known.id == constant.id))
+                .cloned()
+                .collect::<Vec<_>>(),
+        );
     }
     bindings.sort_by_key(|binding| (binding.set, binding.binding));
-    let push_size = push.as_ref().map_or(0, |push| push.fields.iter().map(|field| field.offset + size_of(&field.ty, structs)).max().unwrap_or(0));
+    let push_size = push.as_ref().map_or(0, |push| {
+        push.fields.iter().map(|field| field.offset + size_of(&field.ty, structs)).max().unwrap_or(0)
+    });
     if push_size > 128 {
         return Err(format!("its push constants take {push_size} bytes; every device offers 128"));
     }
@@ -97,15 +112,45 @@ fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String,
     write_table(out, program, &name, &bindings, &constants, local_size, push_size);
     write_bindings(out, &name, &program.summary, 0, &bindings, push.is_some(), &constants, structs);
     if bindings.iter().any(|binding| binding.set == 1) {
-        write_bindings(out, &format!("{name}Material"), "What a material binds for its draws.", 1, &bindings, false, &[], structs);
+        write_bindings(
+            out,
+            &format!("{name}Material"),
+            "What a material binds for its draws.",
+            1,
+            &bindings,
+            false,
+            &[],
+            structs,
+        );
     }
     Ok(())
 }
 
-fn write_table(out: &mut String, program: &Program, name: &str, bindings: &[Binding], constants: &[Constant], local_size: [u32; 3], push_size: u32) {
-    writeln!(out, "static {}: vp::Program = vp::Program {{ name: \"{}/{}\", stages: &[", screaming(name), program.piece, program.pass).ok();
+fn write_table(
+    out: &mut String,
+    program: &Program,
+    name: &str,
+    bindings: &[Binding],
+    constants: &[Constant],
+    local_size: [u32; 3],
+    push_size: u32,
+) {
+    writeln!(
+        out,
+        "static {}: vp::Program = vp::Program {{ name: \"{}/{}\", stages: &[",
+        screaming(name),
+        program.piece,
+        program.pass
+    )
+    .ok();
     for (index, stage) in program.stages.iter().enumerate() {
-        writeln!(out, "vp::Stage {{ kind: vp::StageKind::{}, spirv: vp::Spirv(include_bytes!({:?})) }},", stage.kind, stage.spirv_path.display().to_string()).ok();
+        writeln!(
+            out,
+            "vp::Stage {{ kind: vp::StageKind::{}, spirv: vp::Spirv(include_bytes!({:?})) }},",
+            stage.kind,
+            stage.spirv_path.display().to_string()
+        )
+        .ok();
         debug_assert!(index < 3);
     }
     writeln!(out, "], bindings: &[").ok();
@@ -117,10 +162,16 @@ fn write_table(out: &mut String, program: &Program, name: &str, bindings: &[Bind
             BindingKind::Uniform(_) => "Uniform".to_owned(),
             BindingKind::Storage { .. } => "Storage".to_owned(),
         };
-        writeln!(out, "vp::Binding {{ name: {:?}, set: {}, binding: {}, kind: vp::BindingKind::{kind} }},", binding.name, binding.set, binding.binding).ok();
+        writeln!(
+            out,
+            "vp::Binding {{ name: {:?}, set: {}, binding: {}, kind: vp::BindingKind::{kind} }},",
+            binding.name, binding.set, binding.binding
+        )
+        .ok();
     }
     let constants: Vec<String> = constants.iter().map(|constant| constant.id.to_string()).collect();
-    writeln!(out, "], push_size: {push_size}, constants: &[{}], local_size: {local_size:?} }};", constants.join(", ")).ok();
+    writeln!(out, "], push_size: {push_size}, constants: &[{}], local_size: {local_size:?} }};", constants.join(", "))
+        .ok();
 }
 
 #[allow(clippy::too_many_arguments, reason = "one generated item, every argument a part of it")]
@@ -141,13 +192,24 @@ fn write_bindings(
         writeln!(out, "/// Binding {} of set {set}.\npub {}: {},", field.binding, field.name, handle(&field.kind)).ok();
     }
     for constant in constants {
-        writeln!(out, "/// Specialisation constant {}.\npub {}: {},", constant.id, constant.name.to_lowercase(), rust_type(&constant.ty, "")).ok();
+        writeln!(
+            out,
+            "/// Specialisation constant {}.\npub {}: {},",
+            constant.id,
+            constant.name.to_lowercase(),
+            rust_type(&constant.ty, "")
+        )
+        .ok();
     }
     if push {
         writeln!(out, "/// Push constants.\npub push: {name}Push,").ok();
     }
     let table = screaming(name.strip_suffix("Material").filter(|_| set == 1).unwrap_or(name));
-    writeln!(out, "}}\nimpl BindingSet for {name} {{\nconst PROGRAM: &'static vp::Program = &{table};\nconst SET: u32 = {set};").ok();
+    writeln!(
+        out,
+        "}}\nimpl BindingSet for {name} {{\nconst PROGRAM: &'static vp::Program = &{table};\nconst SET: u32 = {set};"
+    )
+    .ok();
     writeln!(out, "fn visit(&self, visitor: &mut dyn FnMut(u32, Access)) {{").ok();
     for field in &fields {
         writeln!(out, "visitor({}, (&self.{}).into());", field.binding, field.name).ok();
@@ -161,12 +223,22 @@ fn write_bindings(
     for constant in constants {
         let bits = if constant.ty == Type::Float { "to_bits()" } else { "cast_unsigned()" };
         let place = format!("self.{}", constant.name.to_lowercase());
-        if constant.ty == Type::Uint { write!(out, "{place}, ").ok() } else { write!(out, "{place}.{bits}, ").ok() };
+        if constant.ty == Type::Uint {
+            write!(out, "{place}, ").ok()
+        } else {
+            write!(out, "{place}.{bits}, ").ok()
+        };
     }
     out.push_str("]\n}\n}\n");
 }
 
-fn write_struct(out: &mut String, name: &str, fields: &[crate::reflect::Field], structs: &BTreeMap<String, Struct>, summary: &str) -> Result<(), String> {
+fn write_struct(
+    out: &mut String,
+    name: &str,
+    fields: &[crate::reflect::Field],
+    structs: &BTreeMap<String, Struct>,
+    summary: &str,
+) -> Result<(), String> {
     writeln!(out, "/// {summary}\n#[repr(C)]\n#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]\npub struct {name} {{").ok();
     let mut end = 0;
     for field in fields {
@@ -199,7 +271,9 @@ fn handle(kind: &BindingKind) -> String {
         BindingKind::StorageImage { .. } => "ReadWriteImage".to_owned(),
         BindingKind::TexelBuffer => "TexelBuffer".to_owned(),
         BindingKind::Uniform(ty) => format!("Uniform<{}>", rust_type(ty, "types::")),
-        BindingKind::Storage { element, reads: true, writes: false } => format!("ReadBuffer<{}>", rust_type(element, "types::")),
+        BindingKind::Storage { element, reads: true, writes: false } => {
+            format!("ReadBuffer<{}>", rust_type(element, "types::"))
+        }
         BindingKind::Storage { element, reads: false, .. } => format!("WriteBuffer<{}>", rust_type(element, "types::")),
         BindingKind::Storage { element, .. } => format!("ReadWriteBuffer<{}>", rust_type(element, "types::")),
     }
@@ -215,7 +289,8 @@ fn dim_name(dim: ImageDim) -> &'static str {
 }
 
 fn camel(name: &str) -> String {
-    let capital = |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
+    let capital =
+        |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
     name.split('_').map(capital).collect()
 }
 

@@ -76,7 +76,6 @@ pub(crate) struct Stage {
 
 #[derive(Clone, Debug)]
 enum RawType {
-
     Int { signed: bool },
     Float,
     Vector { component: u32, count: u32 },
@@ -113,7 +112,12 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
     for &id in &module.specialised {
         let Some(&spec_id) = module.decorations.get(&(id, Decoration::SpecId)) else { continue };
         let (ty, default) = module.constants[&id];
-        stage.constants.push(Constant { name: module.name(id)?, id: spec_id, ty: module.host_type(ty, 0, &mut stage.structs)?, default });
+        stage.constants.push(Constant {
+            name: module.name(id)?,
+            id: spec_id,
+            ty: module.host_type(ty, 0, &mut stage.structs)?,
+            default,
+        });
     }
     for &(id, pointer, class) in &module.variables {
         let Some(RawType::Pointer { pointee }) = module.types.get(&pointer) else { continue };
@@ -138,7 +142,9 @@ fn parse(words: &[u32]) -> Result<Module, String> {
     let mut at = 5;
     while at < words.len() {
         let count = (words[at] >> 16) as usize;
-        let Some(op) = Op::from_u32(words[at] & 0xffff) else { return Err("it holds an unknown instruction".to_owned()) };
+        let Some(op) = Op::from_u32(words[at] & 0xffff) else {
+            return Err("it holds an unknown instruction".to_owned());
+        };
         if count == 0 || at + count > words.len() {
             return Err("its SPIR-V is cut short".to_owned());
         }
@@ -165,16 +171,21 @@ impl Module {
             }
             Op::MemberDecorate => {
                 if let Some(decoration) = Decoration::from_u32(operands[2]) {
-                    self.member_decorations.insert((operands[0], operands[1], decoration), operands.get(3).copied().unwrap_or(0));
+                    self.member_decorations
+                        .insert((operands[0], operands[1], decoration), operands.get(3).copied().unwrap_or(0));
                 }
             }
-            Op::ExecutionMode if operands[1] == ExecutionMode::LocalSize as u32 => self.local_size = [operands[2], operands[3], operands[4]],
+            Op::ExecutionMode if operands[1] == ExecutionMode::LocalSize as u32 => {
+                self.local_size = [operands[2], operands[3], operands[4]]
+            }
             Op::ExecutionModeId if operands[1] == ExecutionMode::LocalSizeId as u32 => {
                 self.local_size_ids = Some([operands[2], operands[3], operands[4]]);
             }
             Op::TypeInt => self.add_type(operands[0], RawType::Int { signed: operands[2] == 1 }),
             Op::TypeFloat => self.add_type(operands[0], RawType::Float),
-            Op::TypeVector => self.add_type(operands[0], RawType::Vector { component: operands[1], count: operands[2] }),
+            Op::TypeVector => {
+                self.add_type(operands[0], RawType::Vector { component: operands[1], count: operands[2] })
+            }
             Op::TypeMatrix => self.add_type(operands[0], RawType::Matrix { column: operands[1], count: operands[2] }),
             Op::TypeImage => {
                 let dim = Dim::from_u32(operands[2]).unwrap_or(Dim::Dim2D);
@@ -211,28 +222,48 @@ impl Module {
         self.decorations.contains_key(&(id, decoration))
     }
 
-    fn binding(&self, id: u32, pointee: u32, class: StorageClass, structs: &mut BTreeMap<String, Struct>) -> Result<Binding, String> {
+    fn binding(
+        &self,
+        id: u32,
+        pointee: u32,
+        class: StorageClass,
+        structs: &mut BTreeMap<String, Struct>,
+    ) -> Result<Binding, String> {
         let place = |decoration| self.decorations.get(&(id, decoration)).copied();
         let set = place(Decoration::DescriptorSet).unwrap_or(0);
         let reads = !self.has(id, Decoration::NonReadable);
         let writes = !self.has(id, Decoration::NonWritable);
         match &self.types[&pointee] {
             RawType::SampledImage { image } => {
-                let RawType::Image { dim, arrayed, .. } = self.types[image] else { return Err("a sampler of no image".to_owned()) };
-                let kind = if dim == Dim::DimBuffer { BindingKind::TexelBuffer } else { BindingKind::SampledImage(image_dim(dim, arrayed)?) };
+                let RawType::Image { dim, arrayed, .. } = self.types[image] else {
+                    return Err("a sampler of no image".to_owned());
+                };
+                let kind = if dim == Dim::DimBuffer {
+                    BindingKind::TexelBuffer
+                } else {
+                    BindingKind::SampledImage(image_dim(dim, arrayed)?)
+                };
                 self.finish(id, self.name(id)?, set, kind)
             }
             RawType::Image { dim, arrayed, sampled } => {
                 let kind = match (dim, sampled) {
                     (Dim::DimBuffer, _) => BindingKind::TexelBuffer,
                     (_, 2) => BindingKind::StorageImage { dim: image_dim(*dim, *arrayed)?, reads, writes },
-                    _ => return Err(format!("{} is a texture without a sampler; use sampler2D and its like", self.name(id)?)),
+                    _ => {
+                        return Err(format!(
+                            "{} is a texture without a sampler; use sampler2D and its like",
+                            self.name(id)?
+                        ));
+                    }
                 };
                 self.finish(id, self.name(id)?, set, kind)
             }
             RawType::Struct { members } => {
                 let [member] = members[..] else {
-                    return Err(format!("block {} must have exactly one member, a struct or an array", self.name(pointee)?));
+                    return Err(format!(
+                        "block {} must have exactly one member, a struct or an array",
+                        self.name(pointee)?
+                    ));
                 };
                 let name = self.member_names.get(&(pointee, 0)).cloned().ok_or("a block member has no name")?;
                 let element = match self.types[&member] {

@@ -26,32 +26,15 @@ fn materials_take_their_extensions() {
     }));
     let scene = file.load().expect("it is sound");
     let material = &scene.materials()[0];
-    assert_eq!(
-        (material.base_color, material.metallic, material.roughness),
-        ([0.1, 0.2, 0.3, 0.4], 0.5, 1.0)
-    );
+    assert_eq!((material.base_color, material.metallic, material.roughness), ([0.1, 0.2, 0.3, 0.4], 0.5, 1.0));
     assert_eq!(material.emissive, [20.0, 10.0, 0.0]);
-    assert_eq!(
-        (material.alpha, material.double_sided, material.unlit),
-        (Alpha::Mask { cutoff: 0.25 }, true, false)
-    );
-    assert_eq!(
-        (material.ior, material.specular, material.specular_color),
-        (1.33, 0.0, [2.0, 1.0, 0.5])
-    );
+    assert_eq!((material.alpha, material.double_sided, material.unlit), (Alpha::Mask { cutoff: 0.25 }, true, false));
+    assert_eq!((material.ior, material.specular, material.specular_color), (1.33, 0.0, [2.0, 1.0, 0.5]));
     assert_eq!((material.transmission, material.thickness), (0.75, 1.0));
-    assert_eq!(
-        (material.attenuation_distance, material.attenuation_color),
-        (3.0, [0.5, 0.6, 0.7])
-    );
+    assert_eq!((material.attenuation_distance, material.attenuation_color), (3.0, [0.5, 0.6, 0.7]));
     let facts = scene.facts();
     assert!(
-        facts.emissive
-            && facts.transmissive
-            && facts.alpha_masked
-            && facts.specular
-            && facts.diffuse
-            && facts.lit()
+        facts.emissive && facts.transmissive && facts.alpha_masked && facts.specular && facts.diffuse && facts.lit()
     );
 }
 
@@ -78,21 +61,14 @@ fn blending_becomes_a_cutout_with_a_warning() {
     file.material(json!({"name": "veil", "alphaMode": "BLEND"}));
     let scene = file.load().expect("it is sound");
     assert_eq!(scene.materials()[0].alpha, Alpha::Mask { cutoff: 0.5 });
-    assert!(
-        scene.warnings.len() == 1 && scene.warnings[0].contains("veil"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings.len() == 1 && scene.warnings[0].contains("veil"), "{:?}", scene.warnings);
 }
 
 #[test]
 fn textures_are_shared_split_by_use_and_decoded_only_if_used() {
     let mut file = File::triangle();
     let image = gltf_file::png(2, 1, &[255, 0, 0, 255, 0, 255, 0, 128]);
-    let texture = file.texture(
-        &image,
-        json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}),
-    );
+    let texture = file.texture(&image, json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}));
     file.texture(b"this is no image, and nothing uses it", json!({}));
     file.material(json!({
         "pbrMetallicRoughness": {"baseColorTexture": {"index": texture}, "metallicRoughnessTexture": {"index": texture, "texCoord": 1}},
@@ -100,12 +76,9 @@ fn textures_are_shared_split_by_use_and_decoded_only_if_used() {
     }));
     let scene = file.load().expect("it is sound");
     let material = &scene.materials()[0];
-    let [base, data, emissive] = [
-        material.base_color_texture,
-        material.metallic_roughness_texture,
-        material.emissive_texture,
-    ]
-    .map(|reference| reference.expect("it is used"));
+    let [base, data, emissive] =
+        [material.base_color_texture, material.metallic_roughness_texture, material.emissive_texture]
+            .map(|reference| reference.expect("it is used"));
     assert_eq!(base.texture, emissive.texture);
     assert_ne!(base.texture, data.texture);
     assert_eq!((base.texcoord, data.texcoord), (0, 1));
@@ -121,18 +94,12 @@ fn textures_are_shared_split_by_use_and_decoded_only_if_used() {
 fn grey_and_16_bit_images_are_converted() {
     for (bytes, expected) in [
         (gltf_file::grey_png(&[77]), [77, 77, 77, 255]),
-        (
-            gltf_file::png_16(&[0xFFFF, 0x8080, 0, 0xFFFF]),
-            [255, 128, 0, 255],
-        ),
+        (gltf_file::png_16(&[0xFFFF, 0x8080, 0, 0xFFFF]), [255, 128, 0, 255]),
     ] {
         let mut file = File::triangle();
         let texture = file.texture(&bytes, json!({}));
         file.material(json!({"emissiveTexture": {"index": texture}}));
-        assert_eq!(
-            file.load().expect("it is sound").textures()[0].rgba8,
-            expected
-        );
+        assert_eq!(file.load().expect("it is sound").textures()[0].rgba8, expected);
     }
 }
 
@@ -152,7 +119,8 @@ fn images_that_claim_more_than_they_hold_are_refused() {
 fn texture_transforms_scale_then_turn_then_move() {
     let mut file = File::triangle();
     let texture = file.texture(&gltf_file::png(1, 1, &[0; 4]), json!({}));
-    let transform = json!({"offset": [0.5, 0.25], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2.0, 3.0], "texCoord": 1});
+    let transform =
+        json!({"offset": [0.5, 0.25], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2.0, 3.0], "texCoord": 1});
     file.material(json!({"emissiveTexture": {"index": texture, "extensions": {"KHR_texture_transform": transform}}}));
     let scene = file.load().expect("it is sound");
     let reference = scene.materials()[0].emissive_texture.expect("it is used");

@@ -21,17 +21,10 @@ fn fault(file: &File) -> String {
 fn all_index_types_are_read() {
     for (component, bytes) in [(5121, 1), (5123, 2), (5125, 4)] {
         let mut file = File::triangle();
-        let data: Vec<u8> = [2u32, 0, 1]
-            .iter()
-            .flat_map(|index| index.to_le_bytes()[..bytes].to_vec())
-            .collect();
+        let data: Vec<u8> = [2u32, 0, 1].iter().flat_map(|index| index.to_le_bytes()[..bytes].to_vec()).collect();
         let indices = file.accessor(&data, component, "SCALAR", 3);
         file.primitive()["indices"] = json!(indices);
-        assert_eq!(
-            only_primitive(&file).indices,
-            [2, 0, 1],
-            "component type {component}"
-        );
+        assert_eq!(only_primitive(&file).indices, [2, 0, 1], "component type {component}");
     }
 }
 
@@ -43,20 +36,8 @@ fn without_indices_the_vertices_are_used_in_order() {
 #[test]
 fn strips_and_fans_become_lists_of_the_same_orientation() {
     // A strip zigzags up, a fan turns counter-clockwise; all their triangles face +Z.
-    let strip = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 2.0, 0.0],
-    ];
-    let fan = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [-1.0, 1.0, 0.0],
-    ];
+    let strip = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 2.0, 0.0]];
+    let fan = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
     for (mode, positions) in [(5, strip), (6, fan)] {
         let mut file = File::with_positions(&positions);
         file.primitive()["mode"] = json!(mode);
@@ -84,27 +65,16 @@ fn points_and_lines_are_left_out_with_one_warning() {
 fn normalised_integers_become_floats() {
     let mut file = File::triangle();
     let texcoords = file.normalized(&[0, 0, 255, 0, 0, 51], 5121, "VEC2", 3);
-    let colors: Vec<u8> = [65535u16, 0, 0, 0, 65535, 0, 0, 0, 13107]
-        .iter()
-        .flat_map(|value| value.to_le_bytes())
-        .collect();
+    let colors: Vec<u8> =
+        [65535u16, 0, 0, 0, 65535, 0, 0, 0, 13107].iter().flat_map(|value| value.to_le_bytes()).collect();
     let colors = file.normalized(&colors, 5123, "VEC3", 3);
     file.attribute("TEXCOORD_0", texcoords);
     file.attribute("COLOR_0", colors);
     let primitive = only_primitive(&file);
-    assert_eq!(
-        primitive.texcoords[0].as_deref(),
-        Some(&[[0.0, 0.0], [1.0, 0.0], [0.0, 0.2]][..])
-    );
+    assert_eq!(primitive.texcoords[0].as_deref(), Some(&[[0.0, 0.0], [1.0, 0.0], [0.0, 0.2]][..]));
     assert_eq!(
         primitive.colors.as_deref(),
-        Some(
-            &[
-                [1.0, 0.0, 0.0, 1.0],
-                [0.0, 1.0, 0.0, 1.0],
-                [0.0, 0.0, 0.2, 1.0]
-            ][..]
-        )
+        Some(&[[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.2, 1.0]][..])
     );
 }
 
@@ -113,23 +83,14 @@ fn quantized_positions_and_normals_are_read() {
     let mut file = File::triangle();
     file.json["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
     file.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
-    let positions: Vec<u8> = [0i16, 0, 0, 300, 0, 0, 0, -300, 0]
-        .iter()
-        .flat_map(|value| value.to_le_bytes())
-        .collect();
+    let positions: Vec<u8> = [0i16, 0, 0, 300, 0, 0, 0, -300, 0].iter().flat_map(|value| value.to_le_bytes()).collect();
     let positions = file.accessor(&positions, 5122, "VEC3", 3);
     let normals = file.normalized(&[0, 0, 127, 0, 0, 127, 0, 0, 128], 5120, "VEC3", 3);
     file.attribute("POSITION", positions);
     file.attribute("NORMAL", normals);
     let primitive = only_primitive(&file);
-    assert_eq!(
-        primitive.positions,
-        [[0.0, 0.0, 0.0], [300.0, 0.0, 0.0], [0.0, -300.0, 0.0]]
-    );
-    assert_eq!(
-        primitive.normals.as_deref(),
-        Some(&[[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]][..])
-    );
+    assert_eq!(primitive.positions, [[0.0, 0.0, 0.0], [300.0, 0.0, 0.0], [0.0, -300.0, 0.0]]);
+    assert_eq!(primitive.normals.as_deref(), Some(&[[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]][..]));
 }
 
 #[test]
@@ -173,14 +134,10 @@ fn what_an_accessor_claims_is_checked_before_it_is_allocated() {
     for case in cases {
         let mut file = File::triangle();
         let accessor = &mut file.json["accessors"][0];
-        case.as_object()
-            .expect("an object")
-            .iter()
-            .for_each(|(key, value)| accessor[key] = value.clone());
+        case.as_object().expect("an object").iter().for_each(|(key, value)| accessor[key] = value.clone());
         let fault = fault(&file);
         assert!(
-            fault.contains("mesh 0") && fault.contains("accessor 0")
-                || fault.contains("buffer view 99"),
+            fault.contains("mesh 0") && fault.contains("accessor 0") || fault.contains("buffer view 99"),
             "{case}: {fault}"
         );
     }
@@ -192,20 +149,14 @@ fn what_an_accessor_claims_is_checked_before_it_is_allocated() {
     ] {
         let mut file = File::triangle();
         file.json["bufferViews"][0][key] = value;
-        assert!(
-            fault(&file).contains("buffer view 0"),
-            "{key}: {}",
-            fault(&file)
-        );
+        assert!(fault(&file).contains("buffer view 0"), "{key}: {}", fault(&file));
     }
 }
 
 #[test]
 fn many_primitives_may_share_vertices_of_which_each_keeps_few() {
     // Kept whole by each of 200 primitives, 100 kB of vertices would be more than the file justifies.
-    let positions: Vec<[f32; 3]> = (0..9000)
-        .map(|vertex| [vertex as f32, (vertex % 2) as f32, 0.0])
-        .collect();
+    let positions: Vec<[f32; 3]> = (0..9000).map(|vertex| [vertex as f32, (vertex % 2) as f32, 0.0]).collect();
     for indexed in [true, false] {
         let mut file = File::with_positions(&positions);
         if indexed {
@@ -216,10 +167,7 @@ fn many_primitives_may_share_vertices_of_which_each_keeps_few() {
         file.json["meshes"][0]["primitives"] = json!(vec![primitive; 200]);
         match file.load() {
             Ok(scene) => assert!(indexed && scene.meshes()[0].primitives[199].positions.len() == 3),
-            Err(error) => assert!(
-                !indexed && error.to_string().contains("16 times"),
-                "{error}"
-            ),
+            Err(error) => assert!(!indexed && error.to_string().contains("16 times"), "{error}"),
         }
     }
 }
@@ -233,9 +181,7 @@ fn skins_and_morph_targets_are_warned_of_once() {
     file.json["nodes"] = json!([{"mesh": 0, "skin": 0, "children": [1]}, {"mesh": 0, "skin": 0}]);
     let scene = file.load().expect("the static mesh is shown");
     assert_eq!(scene.instances().len(), 2);
-    let [morphs, skins] = &scene.warnings[..] else {
-        panic!("{:?}", scene.warnings)
-    };
+    let [morphs, skins] = &scene.warnings[..] else { panic!("{:?}", scene.warnings) };
     assert!(morphs.contains("morph") && skins.contains("skins"));
 }
 
@@ -246,10 +192,7 @@ fn indices_out_of_range_name_mesh_and_primitive() {
     file.primitive()["indices"] = json!(indices);
     file.json["meshes"][0]["name"] = json!("wall");
     let fault = fault(&file);
-    assert!(
-        fault.contains("\"wall\", primitive 0") && fault.contains("index is 3"),
-        "{fault}"
-    );
+    assert!(fault.contains("\"wall\", primitive 0") && fault.contains("index is 3"), "{fault}");
 }
 
 #[test]
@@ -257,28 +200,16 @@ fn positions_that_are_not_finite_drop_their_primitive() {
     let file = File::with_positions(&[[0.0, 0.0, 0.0], [f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let scene = file.load().expect("the rest is sound");
     assert!(scene.instances().is_empty());
-    assert!(
-        scene.warnings[0].contains("not finite"),
-        "{:?}",
-        scene.warnings
-    );
+    assert!(scene.warnings[0].contains("not finite"), "{:?}", scene.warnings);
 }
 
 #[test]
 fn vertices_that_no_triangle_uses_are_dropped() {
-    let mut file = File::with_positions(&[
-        [0.0, 0.0, 0.0],
-        [7.0, 7.0, 7.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ]);
+    let mut file = File::with_positions(&[[0.0, 0.0, 0.0], [7.0, 7.0, 7.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let indices = file.accessor(&[0, 2, 3], 5121, "SCALAR", 3);
     file.primitive()["indices"] = json!(indices);
     let primitive = only_primitive(&file);
-    assert_eq!(
-        primitive.positions,
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    );
+    assert_eq!(primitive.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     assert_eq!(primitive.indices, [0, 1, 2]);
     assert_eq!(primitive.source_bytes, 4 * 12 + 3);
 }
@@ -287,11 +218,7 @@ fn vertices_that_no_triangle_uses_are_dropped() {
 fn bad_normals_become_face_normals_and_missing_ones_stay_missing() {
     assert!(only_primitive(&File::triangle()).normals.is_none());
     let mut file = File::triangle();
-    let normals = file.floats(
-        &[0.0, 0.0, 0.0, 0.0, 2.0, 0.0, f32::NAN, 0.0, 0.0],
-        "VEC3",
-        3,
-    );
+    let normals = file.floats(&[0.0, 0.0, 0.0, 0.0, 2.0, 0.0, f32::NAN, 0.0, 0.0], "VEC3", 3);
     file.attribute("NORMAL", normals);
     assert_eq!(
         only_primitive(&file).normals.as_deref(),
@@ -302,12 +229,7 @@ fn bad_normals_become_face_normals_and_missing_ones_stay_missing() {
 #[test]
 fn tangents_are_made_for_normal_maps_alone() {
     // v grows downwards, so this quad shows its texture upright: the tangent is +X, the bitangent +Y.
-    let mut file = File::with_positions(&[
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ]);
+    let mut file = File::with_positions(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
     let indices = file.accessor(&[0, 1, 2, 0, 2, 3], 5121, "SCALAR", 6);
     file.primitive()["indices"] = json!(indices);
     let texcoords = file.floats(&[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0], "VEC2", 4);
@@ -317,19 +239,8 @@ fn tangents_are_made_for_normal_maps_alone() {
     assert!(only_primitive(&file).tangents.is_none());
     file.json["materials"][0]["normalTexture"] = json!({"index": texture});
     let primitive = only_primitive(&file);
-    assert_eq!(
-        primitive.positions.len(),
-        6,
-        "flat normals need vertices of their own"
-    );
-    assert!(
-        primitive
-            .normals
-            .as_ref()
-            .expect("made")
-            .iter()
-            .all(|normal| *normal == [0.0, 0.0, 1.0])
-    );
+    assert_eq!(primitive.positions.len(), 6, "flat normals need vertices of their own");
+    assert!(primitive.normals.as_ref().expect("made").iter().all(|normal| *normal == [0.0, 0.0, 1.0]));
     for tangent in primitive.tangents.as_ref().expect("made") {
         let error = tangent
             .iter()

@@ -21,32 +21,19 @@ fn hierarchies_compose_in_double_precision() {
     ]);
     let scene = file.load().expect("it is sound");
     let origin = scene.instances()[0].world.transform_point3(DVec3::ZERO);
-    assert!(
-        (origin - DVec3::new(1e6, 0.252, 0.0)).length() < 1e-9,
-        "{origin}"
-    );
+    assert!((origin - DVec3::new(1e6, 0.252, 0.0)).length() < 1e-9, "{origin}");
     let bounds = scene.bounds().expect("it has a triangle");
-    assert!(
-        (bounds.size() - DVec3::new(2.0, 2.0, 0.0)).length() < 1e-9,
-        "{bounds:?}"
-    );
+    assert!((bounds.size() - DVec3::new(2.0, 2.0, 0.0)).length() < 1e-9, "{bounds:?}");
 }
 
 #[test]
 fn negative_scales_flip_the_winding() {
-    for (scale, flips) in [
-        ([1.0, 1.0, 1.0], false),
-        ([-1.0, 1.0, 1.0], true),
-        ([-1.0, -1.0, 1.0], false),
-        ([-1.0, -1.0, -1.0], true),
-    ] {
+    for (scale, flips) in
+        [([1.0, 1.0, 1.0], false), ([-1.0, 1.0, 1.0], true), ([-1.0, -1.0, 1.0], false), ([-1.0, -1.0, -1.0], true)]
+    {
         let mut file = File::triangle();
         file.json["nodes"][0]["scale"] = json!(scale);
-        assert_eq!(
-            file.load().expect("it is sound").instances()[0].flips_winding,
-            flips,
-            "{scale:?}"
-        );
+        assert_eq!(file.load().expect("it is sound").instances()[0].flips_winding, flips, "{scale:?}");
     }
 }
 
@@ -59,14 +46,11 @@ fn cycles_and_second_parents_are_errors_and_depth_is_none() {
     diamond.json["nodes"] = json!([{"children": [1, 2]}, {"children": [2]}, {}]);
     assert!(fault(&diamond).contains("node 2"), "{}", fault(&diamond));
     let mut deep = File::triangle();
-    let chain =
-        (0..100_000).map(|index| json!({"children": [index + 1], "translation": [0, 0, 1]}));
+    let chain = (0..100_000).map(|index| json!({"children": [index + 1], "translation": [0, 0, 1]}));
     deep.json["nodes"] = chain.chain([json!({"mesh": 0})]).collect();
     let mut scene = deep.load().expect("depth is no fault");
     assert_eq!(scene.instances()[0].world.translation.z, 1e5);
-    scene
-        .set_local_transform(NodeId(0), DAffine3::IDENTITY)
-        .expect("it can be moved");
+    scene.set_local_transform(NodeId(0), DAffine3::IDENTITY).expect("it can be moved");
     assert_eq!(scene.instances()[0].world.translation.z, 1e5 - 1.0);
 }
 
@@ -87,38 +71,13 @@ fn cameras_are_found_by_name_node_or_index() {
     let first = scene.camera_view(None).expect("there is one");
     assert_eq!(first, scene.camera_view(Some("first")).expect("by name"));
     assert_eq!(first, scene.camera_view(Some("0")).expect("by index"));
-    assert_eq!(
-        first.projection,
-        Projection::Perspective {
-            vertical_fov: 1.0,
-            aspect: Some(1.5),
-            near: 0.1
-        }
-    );
-    assert_eq!(
-        first.world,
-        DAffine3::from_translation(DVec3::new(0.0, 0.0, 5.0)),
-        "scale is removed"
-    );
+    assert_eq!(first.projection, Projection::Perspective { vertical_fov: 1.0, aspect: Some(1.5), near: 0.1 });
+    assert_eq!(first.world, DAffine3::from_translation(DVec3::new(0.0, 0.0, 5.0)), "scale is removed");
     let flat = scene.camera_view(Some("flat")).expect("by the node's name");
-    assert_eq!(
-        flat.projection,
-        Projection::Orthographic {
-            half_width: 2.0,
-            half_height: 1.0,
-            near: 0.0,
-            far: 10.0
-        }
-    );
+    assert_eq!(flat.projection, Projection::Orthographic { half_width: 2.0, half_height: 1.0, near: 0.0, far: 10.0 });
     assert_eq!(flat, scene.camera_view(Some("1")).expect("by index"));
-    let error = scene
-        .camera_view(Some("third"))
-        .expect_err("there is none")
-        .to_string();
-    assert!(
-        error.contains("third") && error.contains("first") && error.contains("flat"),
-        "{error}"
-    );
+    let error = scene.camera_view(Some("third")).expect_err("there is none").to_string();
+    assert!(error.contains("third") && error.contains("first") && error.contains("flat"), "{error}");
 }
 
 #[test]
@@ -126,17 +85,11 @@ fn without_cameras_a_view_shows_the_scene() {
     let scene = File::triangle().load().expect("it is sound");
     let view = scene.camera_view(None).expect("a view is always found");
     let forward = -view.world.matrix3.z_axis;
-    assert!(
-        view.automatic && forward.z < 0.0,
-        "the triangle faces +Z: {forward}"
-    );
+    assert!(view.automatic && forward.z < 0.0, "the triangle faces +Z: {forward}");
     let bounds = scene.bounds().expect("it has a triangle");
     let to_center = (bounds.center() - view.world.translation).normalize();
     assert!(to_center.dot(forward) > 0.999);
-    assert!(matches!(
-        scene.camera_view(Some("any")),
-        Err(SceneError::UnknownCamera { .. })
-    ));
+    assert!(matches!(scene.camera_view(Some("any")), Err(SceneError::UnknownCamera { .. })));
 }
 
 #[test]
@@ -156,27 +109,12 @@ fn lights_are_placed_in_the_world() {
     file.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
     let scene = file.load().expect("it is sound");
     let lights = scene.placed_lights();
-    assert_eq!(
-        lights.len(),
-        2,
-        "the third is of no known kind: {:?}",
-        scene.warnings
-    );
+    assert_eq!(lights.len(), 2, "the third is of no known kind: {:?}", scene.warnings);
     assert_eq!(scene.warnings.len(), 1);
-    assert_eq!(
-        lights[0].kind,
-        LightKind::Spot {
-            inner_angle: 0.2,
-            outer_angle: 0.4
-        }
-    );
+    assert_eq!(lights[0].kind, LightKind::Spot { inner_angle: 0.2, outer_angle: 0.4 });
     assert_eq!(lights[0].intensity, [10.0, 5.0, 0.0]);
     assert_eq!(lights[0].position, DVec3::new(1.0, 2.0, 3.0));
-    assert!(
-        (lights[0].direction - DVec3::NEG_Y).length() < 1e-9,
-        "{}",
-        lights[0].direction
-    );
+    assert!((lights[0].direction - DVec3::NEG_Y).length() < 1e-9, "{}", lights[0].direction);
     assert_eq!(lights[1].direction, DVec3::NEG_Z);
 }
 
@@ -184,11 +122,7 @@ fn animated(interpolation: &str, path: &str, times: &[f32], values: &[f32]) -> S
     let mut file = File::triangle();
     let shape = if path == "rotation" { "VEC4" } else { "VEC3" };
     let input = file.floats(times, "SCALAR", times.len());
-    let output = file.floats(
-        values,
-        shape,
-        values.len() / if path == "rotation" { 4 } else { 3 },
-    );
+    let output = file.floats(values, shape, values.len() / if path == "rotation" { 4 } else { 3 });
     file.json["nodes"][0]["scale"] = json!([2.0, 2.0, 2.0]);
     file.json["animations"] = json!([{
         "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
@@ -203,10 +137,7 @@ fn animated(interpolation: &str, path: &str, times: &[f32], values: &[f32]) -> S
 fn translation_at(scene: &mut Scene, seconds: f64) -> DVec3 {
     scene.set_time(seconds);
     let local = scene.nodes()[0].local;
-    assert!(
-        (local.matrix3.x_axis - DVec3::X * 2.0).length() < 1e-12,
-        "what is not animated stays: {local:?}"
-    );
+    assert!((local.matrix3.x_axis - DVec3::X * 2.0).length() < 1e-12, "what is not animated stays: {local:?}");
     local.translation
 }
 
@@ -214,54 +145,26 @@ fn translation_at(scene: &mut Scene, seconds: f64) -> DVec3 {
 fn linear_and_step_animations_interpolate_and_stop_at_their_ends() {
     let values = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 4.0, 8.0, 0.0];
     let mut linear = animated("LINEAR", "translation", &[1.0, 2.0, 4.0], &values);
-    for (seconds, x, y) in [
-        (0.0, 0.0, 0.0),
-        (1.25, 1.0, 0.0),
-        (2.0, 4.0, 0.0),
-        (3.0, 4.0, 4.0),
-        (9.0, 4.0, 8.0),
-    ] {
-        assert_eq!(
-            translation_at(&mut linear, seconds),
-            DVec3::new(x, y, 0.0),
-            "at {seconds} s"
-        );
+    for (seconds, x, y) in [(0.0, 0.0, 0.0), (1.25, 1.0, 0.0), (2.0, 4.0, 0.0), (3.0, 4.0, 4.0), (9.0, 4.0, 8.0)] {
+        assert_eq!(translation_at(&mut linear, seconds), DVec3::new(x, y, 0.0), "at {seconds} s");
     }
     let mut step = animated("STEP", "translation", &[1.0, 2.0, 4.0], &values);
-    for (seconds, x, y) in [
-        (0.0, 0.0, 0.0),
-        (1.99, 0.0, 0.0),
-        (2.0, 4.0, 0.0),
-        (3.99, 4.0, 0.0),
-        (9.0, 4.0, 8.0),
-    ] {
-        assert_eq!(
-            translation_at(&mut step, seconds),
-            DVec3::new(x, y, 0.0),
-            "at {seconds} s"
-        );
+    for (seconds, x, y) in [(0.0, 0.0, 0.0), (1.99, 0.0, 0.0), (2.0, 4.0, 0.0), (3.99, 4.0, 0.0), (9.0, 4.0, 8.0)] {
+        assert_eq!(translation_at(&mut step, seconds), DVec3::new(x, y, 0.0), "at {seconds} s");
     }
     linear.set_frame(45); // frame 45 is at 1.5 s
-    assert_eq!(
-        linear.nodes()[0].local.translation,
-        DVec3::new(2.0, 0.0, 0.0)
-    );
+    assert_eq!(linear.nodes()[0].local.translation, DVec3::new(2.0, 0.0, 0.0));
 }
 
 #[test]
 fn cubic_splines_follow_their_tangents() {
     // x(t) = t³ − t over [0, 2]: its tangents are −1 and 11.
-    let values = [
-        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 11.0, 0.0, 0.0, 6.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-    ];
+    let values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 11.0, 0.0, 0.0, 6.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let mut scene = animated("CUBICSPLINE", "translation", &[0.0, 2.0], &values);
     for seconds in [0.0, 0.3, 1.0, 1.7, 2.0] {
         let x = translation_at(&mut scene, seconds).x;
         let expected = seconds * seconds * seconds - seconds;
-        assert!(
-            (x - expected).abs() < 1e-12,
-            "at {seconds} s: {x}, not {expected}"
-        );
+        assert!((x - expected).abs() < 1e-12, "at {seconds} s: {x}, not {expected}");
     }
 }
 
@@ -269,12 +172,7 @@ fn cubic_splines_follow_their_tangents() {
 fn rotations_take_the_shortest_arc() {
     // The second quaternion is a quarter turn about Z with its sign reversed.
     let half = 0.5f32.sqrt();
-    let mut scene = animated(
-        "LINEAR",
-        "rotation",
-        &[0.0, 1.0],
-        &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -half, -half],
-    );
+    let mut scene = animated("LINEAR", "rotation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -half, -half]);
     scene.set_time(0.5);
     let axis = scene.nodes()[0].local.matrix3.x_axis.normalize();
     let expected = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4) * DVec3::X;
@@ -286,16 +184,10 @@ fn extensions_are_refused_if_required_and_named_once_if_not() {
     let mut file = File::triangle();
     file.json["extensionsUsed"] = json!(["EXT_b", "EXT_a", "KHR_materials_ior"]);
     let scene = file.load().expect("they are optional");
-    assert_eq!(
-        scene.warnings,
-        ["extensions that are not supported are ignored: EXT_a, EXT_b"]
-    );
+    assert_eq!(scene.warnings, ["extensions that are not supported are ignored: EXT_a, EXT_b"]);
     file.json["extensionsRequired"] = json!(["EXT_b", "KHR_materials_ior"]);
     let error = file.load().expect_err("it is required");
-    assert!(
-        matches!(&error, SceneError::RequiredExtensions { extensions, .. } if extensions == "EXT_b"),
-        "{error}"
-    );
+    assert!(matches!(&error, SceneError::RequiredExtensions { extensions, .. } if extensions == "EXT_b"), "{error}");
 }
 
 #[test]
@@ -304,27 +196,16 @@ fn all_containers_give_the_same_scene() {
     std::fs::create_dir_all(folder.join("sub folder")).expect("a temporary folder");
     let file = File::triangle();
     std::fs::write(folder.join("sub folder/data.bin"), &file.bin).expect("it can be written");
-    std::fs::write(
-        folder.join("external.gltf"),
-        file.gltf("sub%20folder/data.bin"),
-    )
-    .expect("it can be written");
+    std::fs::write(folder.join("external.gltf"), file.gltf("sub%20folder/data.bin")).expect("it can be written");
     std::fs::write(folder.join("binary.glb"), file.glb()).expect("it can be written");
     let external = Scene::load(&folder.join("external.gltf")).expect("the buffer lies beside it");
-    let binary = Scene::open(&folder.join("binary.glb").display().to_string())
-        .expect("the buffer is a chunk");
-    let embedded = Scene::from_bytes("embedded", file.gltf(&file.data_uri()).as_bytes(), None)
-        .expect("the buffer is a data URI");
+    let binary = Scene::open(&folder.join("binary.glb").display().to_string()).expect("the buffer is a chunk");
+    let embedded =
+        Scene::from_bytes("embedded", file.gltf(&file.data_uri()).as_bytes(), None).expect("the buffer is a data URI");
     std::fs::remove_dir_all(&folder).expect("it can be removed");
-    assert_eq!(
-        (external.name.as_str(), binary.name.as_str()),
-        ("external", "binary")
-    );
+    assert_eq!((external.name.as_str(), binary.name.as_str()), ("external", "binary"));
     for scene in [&external, &binary, &embedded] {
-        assert_eq!(
-            scene.bounds(),
-            File::triangle().load().expect("it is sound").bounds()
-        );
+        assert_eq!(scene.bounds(), File::triangle().load().expect("it is sound").bounds());
     }
 }
 
@@ -341,11 +222,7 @@ fn uris_that_lead_elsewhere_are_refused() {
         ("data:application/octet-stream;base64,@@@@", "base64"),
         ("data:application/octet-stream,plain", "base64"),
     ] {
-        let result = Scene::from_bytes(
-            "test",
-            file.gltf(uri).as_bytes(),
-            Some(std::path::Path::new("/tmp")),
-        );
+        let result = Scene::from_bytes("test", file.gltf(uri).as_bytes(), Some(std::path::Path::new("/tmp")));
         let error = result.expect_err(uri).to_string();
         assert!(error.contains(expected), "{uri}: {error}");
     }
@@ -369,22 +246,14 @@ fn faults_in_unused_parts_do_not_matter() {
     file.json["skins"] = json!("none");
     let scene = file.load().expect("the active scene is sound");
     assert_eq!(scene.instances().len(), 1);
-    assert_eq!(
-        scene.warnings.len(),
-        1,
-        "the animation: {:?}",
-        scene.warnings
-    );
+    assert_eq!(scene.warnings.len(), 1, "the animation: {:?}", scene.warnings);
 }
 
 #[test]
 fn the_description_is_read() {
     let mut file = File::triangle();
     file.json["asset"]["extras"] = json!({"description": "one triangle"});
-    assert_eq!(
-        file.load().expect("it is sound").description.as_deref(),
-        Some("one triangle")
-    );
+    assert_eq!(file.load().expect("it is sound").description.as_deref(), Some("one triangle"));
 }
 
 #[test]
@@ -392,19 +261,11 @@ fn builtin_scenes_load_and_describe_themselves() {
     for name in irradia::scene::builtin_names() {
         let scene = Scene::open(name).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(scene.warnings, Vec::<String>::new(), "{name}");
-        assert!(
-            scene.description.is_some_and(|line| !line.is_empty()),
-            "{name} has no description"
-        );
+        assert!(scene.description.is_some_and(|line| !line.is_empty()), "{name} has no description");
     }
-    let error = Scene::open("no such scene")
-        .expect_err("there is none")
-        .to_string();
+    let error = Scene::open("no such scene").expect_err("there is none").to_string();
     assert!(
-        error.contains("no such scene")
-            && irradia::scene::builtin_names()
-                .iter()
-                .all(|name| error.contains(name)),
+        error.contains("no such scene") && irradia::scene::builtin_names().iter().all(|name| error.contains(name)),
         "{error}"
     );
 }

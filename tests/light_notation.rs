@@ -6,10 +6,7 @@ use std::f64::consts::PI;
 
 #[track_caller]
 fn assert_close(actual: f64, expected: f64, relative: f64) {
-    assert!(
-        (actual - expected).abs() <= relative * expected.abs(),
-        "{actual} is not {expected}"
-    );
+    assert!((actual - expected).abs() <= relative * expected.abs(), "{actual} is not {expected}");
 }
 
 #[test]
@@ -23,11 +20,7 @@ fn suns_stand_where_their_angles_say() {
     ];
     for (spec, direction) in cases {
         let parsed = LightSpec::parse(spec).expect(spec);
-        assert!(
-            (parsed.direction - direction).length() < 1e-9,
-            "{spec}: {}",
-            parsed.direction
-        );
+        assert!((parsed.direction - direction).length() < 1e-9, "{spec}: {}", parsed.direction);
         assert_eq!(parsed.light.kind, LightKind::Directional);
         assert_eq!(parsed.light.intensity, [PI as f32; 3], "its default");
     }
@@ -37,35 +30,14 @@ fn suns_stand_where_their_angles_say() {
 fn lights_written_out_are_placed_as_written() {
     let mut scene = Scene::empty("lights");
     for spec in ["sun:90,45,2", "point:1,2,3,4:5:6", "spot:1,2,3,0,-2,0,30,7"] {
-        scene
-            .add_light_spec(&LightSpec::parse(spec).expect(spec))
-            .expect(spec);
+        scene.add_light_spec(&LightSpec::parse(spec).expect(spec)).expect(spec);
     }
-    let [sun, point, spot] = &scene.placed_lights()[..] else {
-        panic!("three lights")
-    };
+    let [sun, point, spot] = &scene.placed_lights()[..] else { panic!("three lights") };
     assert_eq!(sun.intensity, [2.0; 3]);
-    assert!(
-        (sun.direction - DVec3::new(-1.0, -1.0, 0.0).normalize()).length() < 1e-9,
-        "{}",
-        sun.direction
-    );
-    assert_eq!(
-        (point.position, point.intensity),
-        (DVec3::new(1.0, 2.0, 3.0), [4.0, 5.0, 6.0])
-    );
-    assert!(
-        (spot.direction - DVec3::NEG_Y).length() < 1e-9,
-        "{}",
-        spot.direction
-    );
-    let LightKind::Spot {
-        inner_angle,
-        outer_angle,
-    } = spot.kind
-    else {
-        panic!("a spot")
-    };
+    assert!((sun.direction - DVec3::new(-1.0, -1.0, 0.0).normalize()).length() < 1e-9, "{}", sun.direction);
+    assert_eq!((point.position, point.intensity), (DVec3::new(1.0, 2.0, 3.0), [4.0, 5.0, 6.0]));
+    assert!((spot.direction - DVec3::NEG_Y).length() < 1e-9, "{}", spot.direction);
+    let LightKind::Spot { inner_angle, outer_angle } = spot.kind else { panic!("a spot") };
     assert_close(outer_angle.into(), PI / 6.0, 1e-6);
     assert_close(inner_angle.into(), 0.9 * PI / 6.0, 1e-6);
     assert_eq!(scene.facts().punctual_lights, 3);

@@ -15,22 +15,14 @@ const LONGEST_LOAD: Duration = Duration::from_secs(5);
 
 /// A small file in which much can break: indices, a sparse accessor, a normal map, a hierarchy, lights, a camera, an animation.
 fn rich_file() -> File {
-    let mut file = File::with_positions(&[
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.5],
-    ]);
+    let mut file = File::with_positions(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]]);
     let indices = file.accessor(&[0, 1, 2, 0, 2, 3], 5121, "SCALAR", 6);
     file.primitive()["indices"] = json!(indices);
     let texcoords = file.normalized(&[0, 255, 255, 255, 255, 0, 0, 0], 5121, "VEC2", 4);
     file.attribute("TEXCOORD_0", texcoords);
     let normals = file.floats(&[0.0, 0.0, 1.0].repeat(4), "VEC3", 4);
     file.attribute("NORMAL", normals);
-    let (at, values) = (
-        file.view(&[1, 3]),
-        file.view(&gltf_file::float_bytes(&[0.5; 8])),
-    );
+    let (at, values) = (file.view(&[1, 3]), file.view(&gltf_file::float_bytes(&[0.5; 8])));
     let colors = file.push("accessors", json!({
         "componentType": 5126, "type": "VEC4", "count": 4,
         "sparse": {"count": 2, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}},
@@ -47,10 +39,8 @@ fn rich_file() -> File {
         "samplers": [{"input": input, "output": output}],
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
     }]);
-    file.json["cameras"] =
-        json!([{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]);
-    file.json["extensions"] =
-        json!({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}});
+    file.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]);
+    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}});
     file.json["nodes"] = json!([
         {"mesh": 0, "children": [1, 2], "scale": [1, -2, 1]},
         {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1]},
@@ -87,10 +77,7 @@ fn fuzz(original: &[u8], seed: u64, mutate: impl Fn(&mut Vec<u8>, &mut Pcg32)) {
     }
     // Damage that never, or always, stops a file from loading would test little.
     println!("{loaded} of {MUTANTS} damaged files load");
-    assert!(
-        loaded > MUTANTS / 100 && loaded < MUTANTS,
-        "{loaded} of {MUTANTS} load"
-    );
+    assert!(loaded > MUTANTS / 100 && loaded < MUTANTS, "{loaded} of {MUTANTS} load");
 }
 
 fn pick(random: &mut Pcg32, count: usize) -> usize {
@@ -113,14 +100,9 @@ fn changed_numbers_are_survived() {
     let file = rich_file();
     let text = file.gltf(&file.data_uri()).into_bytes();
     fuzz(&text, 11, |bytes, random| {
-        let data = bytes
-            .windows(5)
-            .position(|window| window == b"data:")
-            .unwrap_or(0);
+        let data = bytes.windows(5).position(|window| window == b"data:").unwrap_or(0);
         let digits: Vec<usize> = (0..bytes.len())
-            .filter(|&at| {
-                bytes[at].is_ascii_digit() && !(data..data + file.bin.len() * 2).contains(&at)
-            })
+            .filter(|&at| bytes[at].is_ascii_digit() && !(data..data + file.bin.len() * 2).contains(&at))
             .collect();
         for _ in 0..=pick(random, 2) {
             let at = digits[pick(random, digits.len())];
@@ -141,10 +123,6 @@ fn changed_numbers_are_survived() {
 fn cut_files_are_survived() {
     let glb = rich_file().glb();
     for length in 0..glb.len() {
-        assert!(
-            !survive(&glb[..length], length),
-            "{length} of {} bytes load",
-            glb.len()
-        );
+        assert!(!survive(&glb[..length], length), "{length} of {} bytes load", glb.len());
     }
 }

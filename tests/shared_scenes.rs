@@ -13,20 +13,14 @@ const LONGEST_LOAD: Duration = Duration::from_secs(10);
 /// Files that say that they cannot be shown without an extension that irradia lacks.
 const REQUIRING: [(&str, &str); 2] = [
     ("BoxMeshopt.glb", "EXT_meshopt_compression"),
-    (
-        "04_sphere_specular_glossiness.gltf",
-        "KHR_materials_pbrSpecularGlossiness",
-    ),
+    ("04_sphere_specular_glossiness.gltf", "KHR_materials_pbrSpecularGlossiness"),
 ];
 
 fn shared_scenes() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes");
     let folder = std::env::var_os("IRRADIA_SHARED_SCENES").map_or_else(beside, PathBuf::from);
     if !folder.is_dir() {
-        println!(
-            "skipped: there is no {}; set IRRADIA_SHARED_SCENES",
-            folder.display()
-        );
+        println!("skipped: there is no {}; set IRRADIA_SHARED_SCENES", folder.display());
         return None;
     }
     Some(folder)
@@ -41,10 +35,7 @@ fn gltf_files(folder: &Path) -> Vec<PathBuf> {
             let path = entry.expect("the entry can be read").path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path
-                .extension()
-                .is_some_and(|extension| extension == "gltf" || extension == "glb")
-            {
+            } else if path.extension().is_some_and(|extension| extension == "gltf" || extension == "glb") {
                 files.push(path);
             }
         }
@@ -67,30 +58,19 @@ fn sound_scenes_load() {
         return;
     };
     let mut count = 0;
-    for path in gltf_files(&folder)
-        .into_iter()
-        .filter(|path| !path.starts_with(folder.join("malformed")))
-    {
-        let shown = path
-            .strip_prefix(&folder)
-            .unwrap_or(&path)
-            .display()
-            .to_string();
+    for path in gltf_files(&folder).into_iter().filter(|path| !path.starts_with(folder.join("malformed"))) {
+        let shown = path.strip_prefix(&folder).unwrap_or(&path).display().to_string();
         let (result, took) = load_timed(&path);
         count += 1;
         let refusal = REQUIRING.iter().find(|(file, _)| shown.ends_with(file));
         if let Some((_, extension)) = refusal {
-            let error = result
-                .expect_err("what it requires is not supported")
-                .to_string();
+            let error = result.expect_err("what it requires is not supported").to_string();
             assert!(error.contains(extension), "{error}");
             continue;
         }
         let scene = result.unwrap_or_else(|error| panic!("{shown}: {error}"));
         let view_start = Instant::now();
-        let view = scene
-            .camera_view(None)
-            .unwrap_or_else(|error| panic!("{shown}: {error}"));
+        let view = scene.camera_view(None).unwrap_or_else(|error| panic!("{shown}: {error}"));
         let view_time = view_start.elapsed();
         assert!(view.world.is_finite(), "{shown}: {view:?}");
         let triangles = scene.facts().triangles;
@@ -100,9 +80,7 @@ fn sound_scenes_load() {
         );
         if let Some(bounds) = scene.bounds() {
             assert!(
-                bounds.min.is_finite()
-                    && bounds.max.is_finite()
-                    && bounds.min.cmple(bounds.max).all(),
+                bounds.min.is_finite() && bounds.max.is_finite() && bounds.min.cmple(bounds.max).all(),
                 "{shown}: {bounds:?}"
             );
         }
@@ -126,8 +104,7 @@ fn triangle_counts_agree_with_the_catalogue() {
         ("white-room/white-room.glb", 385_833),
     ];
     for (path, triangles) in expected {
-        let scene =
-            Scene::load(&folder.join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let scene = Scene::load(&folder.join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
         assert_eq!(scene.facts().triangles, triangles, "{path}");
     }
 }
@@ -137,8 +114,7 @@ fn a_box_without_a_camera_is_seen_through_its_open_side() {
     let Some(folder) = shared_scenes() else {
         return;
     };
-    let scene =
-        Scene::load(&folder.join("bevy-cornell-box/bevy-cornell-box.glb")).expect("it is sound");
+    let scene = Scene::load(&folder.join("bevy-cornell-box/bevy-cornell-box.glb")).expect("it is sound");
     let view = scene.camera_view(None).expect("a view is always found");
     let bounds = scene.bounds().expect("it has triangles");
     let forward = -view.world.matrix3.z_axis;
@@ -157,11 +133,7 @@ fn malformed_files_give_errors_or_their_sound_part() {
     let files = gltf_files(&folder.join("malformed"));
     let (mut loaded, mut refused) = (0, 0);
     for path in &files {
-        let shown = path
-            .strip_prefix(&folder)
-            .unwrap_or(path)
-            .display()
-            .to_string();
+        let shown = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
         match load_timed(path).0 {
             Ok(scene) => {
                 loaded += 1;
@@ -179,9 +151,5 @@ fn malformed_files_give_errors_or_their_sound_part() {
     }
     println!("{loaded} load, {refused} are refused");
     assert!(files.len() > 100, "only {} files were found", files.len());
-    assert!(
-        refused > 20,
-        "only {refused} of {} malformed files were refused",
-        files.len()
-    );
+    assert!(refused > 20, "only {refused} of {} malformed files were refused", files.len());
 }

@@ -46,7 +46,7 @@ impl SceneArgs {
         for warning in &scene.warnings {
             tracing::warn!("{warning}");
         }
-        if !scene.facts().lit {
+        if !scene.facts().lit() {
             tracing::warn!(
                 "{} has no light and stays black; add one with --light sun:45,60 or --light point:X,Y,Z,W/sr, or a sky with --sky 1,1,1",
                 scene.name

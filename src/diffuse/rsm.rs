@@ -29,7 +29,14 @@ pub(crate) struct Rsm {
 }
 
 /// Declares the method's passes in the order in which they run.
-pub(crate) fn rsm(graph: &mut Graph<'_>, buffer: &GBuffer, set: &LightSet, lights: &LightViews, reflective: ReflectiveViews, settings: &RsmSettings) -> Rsm {
+pub(crate) fn rsm(
+    graph: &mut Graph<'_>,
+    buffer: &GBuffer,
+    set: &LightSet,
+    lights: &LightViews,
+    reflective: ReflectiveViews,
+    settings: &RsmSettings,
+) -> Rsm {
     let tile_count = set.atlas.tiles.len() as u32;
     let vpl_count = settings.vpls;
     let tiles = graph.upload("rsm.tiles", &set.atlas.tiles, Dependence::LIGHTS);
@@ -47,9 +54,14 @@ pub(crate) fn rsm(graph: &mut Graph<'_>, buffer: &GBuffer, set: &LightSet, light
         tile_fluxes: tile_fluxes.write(),
         push: TileFluxPush { tile_count },
     };
-    graph.pass("diffuse/rsm/tile-flux", pass).note("tiles", u64::from(tile_count)).groups([tile_count.min(MOST_TILE_GROUPS), 1, 1]);
+    graph.pass("diffuse/rsm/tile-flux", pass).note("tiles", u64::from(tile_count)).groups([
+        tile_count.min(MOST_TILE_GROUPS),
+        1,
+        1,
+    ]);
 
-    let pass = Scan { tile_fluxes: tile_fluxes.read(), flux_prefix: flux_prefix.write(), push: ScanPush { tile_count } };
+    let pass =
+        Scan { tile_fluxes: tile_fluxes.read(), flux_prefix: flux_prefix.write(), push: ScanPush { tile_count } };
     graph.pass("diffuse/rsm/scan", pass).groups([1, 1, 1]);
 
     let pass = Vpls {

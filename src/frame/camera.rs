@@ -25,7 +25,13 @@ pub(crate) fn camera(view: &CameraView, size: [u32; 2], origin: DVec3) -> types:
     let right_scaled = (right * half_width).as_vec3();
     let down_scaled = (-up * half_height).as_vec3();
     types::Camera {
-        view_projection: view_projection(position, [right_scaled, down_scaled, forward], near as f32, depth_range as f32).to_cols_array_2d(),
+        view_projection: view_projection(
+            position,
+            [right_scaled, down_scaled, forward],
+            near as f32,
+            depth_range as f32,
+        )
+        .to_cols_array_2d(),
         position_rs: position.to_array(),
         near: near as f32,
         forward: forward.to_array(),
@@ -65,7 +71,10 @@ mod tests {
         let view = CameraView { world: DAffine3::IDENTITY, projection, name: String::new(), automatic: false };
         let camera = camera(&view, [200, 100], DVec3::ZERO);
         assert!(project(&camera, Vec3::new(0.0, 0.0, -0.5)).abs_diff_eq(Vec3::new(0.0, 0.0, 1.0), 1e-6), "near plane");
-        assert!(project(&camera, Vec3::new(4.0, 2.0, -2.0)).abs_diff_eq(Vec3::new(1.0, -1.0, 0.25), 1e-6), "upper right corner");
+        assert!(
+            project(&camera, Vec3::new(4.0, 2.0, -2.0)).abs_diff_eq(Vec3::new(1.0, -1.0, 0.25), 1e-6),
+            "upper right corner"
+        );
     }
 
     #[test]

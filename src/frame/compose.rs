@@ -9,7 +9,12 @@ use crate::renderer::Slot;
 use crate::shaders::compose::{Image, ImagePush};
 
 /// Declares the pass that adds up the slots that there are; a slot that no method fills is `None`.
-pub(crate) fn compose(graph: &mut Graph<'_>, buffer: &GBuffer, sky: [f32; 3], slot: impl Fn(Slot) -> Option<ImageRef>) -> ImageRef {
+pub(crate) fn compose(
+    graph: &mut Graph<'_>,
+    buffer: &GBuffer,
+    sky: [f32; 3],
+    slot: impl Fn(Slot) -> Option<ImageRef>,
+) -> ImageRef {
     let image = graph.image("image", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
     // What stands for an absent slot is bound but not read.
     let bound = |name: Slot| slot(name).unwrap_or(buffer.depth).sampled();

@@ -10,7 +10,12 @@ use crate::renderer::ShadowSettings;
 use crate::shaders::direct::{ShadowMap, ShadowMapPush};
 
 /// Declares the pass; returns the slot's radiance.
-pub(crate) fn shadow_map(graph: &mut Graph<'_>, buffer: &GBuffer, lights: &LightViews, settings: &ShadowSettings) -> ImageRef {
+pub(crate) fn shadow_map(
+    graph: &mut Graph<'_>,
+    buffer: &GBuffer,
+    lights: &LightViews,
+    settings: &ShadowSettings,
+) -> ImageRef {
     let direct = graph.image("direct", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
     let (specular, has_specular) = buffer.specular();
     let pass = ShadowMap {

@@ -31,7 +31,13 @@ impl GBuffer {
 }
 
 /// Declares the passes. `emission`: whether the emitted radiance is wanted.
-pub(crate) fn gbuffer(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, facts: &Facts, view: &View) -> GBuffer {
+pub(crate) fn gbuffer(
+    graph: &mut Graph<'_>,
+    data: &SceneData,
+    geometry: &Geometry,
+    facts: &Facts,
+    view: &View,
+) -> GBuffer {
     let size = view.size;
     let camera = graph.upload("camera", &[view.camera], Dependence::CAMERA).uniform();
     let buffer = GBuffer {
@@ -43,7 +49,11 @@ pub(crate) fn gbuffer(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geomet
         emission: view.emission.then(|| graph.image("gbuffer.emission", vk::Format::R32G32B32A32_SFLOAT, size)),
     };
     let [red, green, blue] = view.sky;
-    let clear = Clears { surface: ClearColor::Uint([0; 4]), specular: ClearColor::Float([0.0; 4]), emission: ClearColor::Float([red, green, blue, 1.0]) };
+    let clear = Clears {
+        surface: ClearColor::Uint([0; 4]),
+        specular: ClearColor::Float([0.0; 4]),
+        emission: ClearColor::Float([red, green, blue, 1.0]),
+    };
     let draw_view = [DrawView::new(&view.camera.view_projection, None, None)];
 
     let plain = gbuffer::Plain {
@@ -84,7 +94,11 @@ pub(crate) fn gbuffer(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geomet
         };
         let list = draw_list(data, Attributes::Textured, &draw_view, takes);
         let pass = graph.raster(name, textured, Attributes::Textured.raster_state(data));
-        pass.depth(buffer.depth, None).color(buffer.surface, None).color_if(buffer.specular, None).color_if(buffer.emission, None).draw(list);
+        pass.depth(buffer.depth, None)
+            .color(buffer.surface, None)
+            .color_if(buffer.specular, None)
+            .color_if(buffer.emission, None)
+            .draw(list);
     }
     buffer
 }

@@ -24,11 +24,23 @@ impl Geometry {
     pub(crate) fn import(graph: &mut Graph<'_>, data: &SceneData) -> Geometry {
         let placed = Dependence::GEOMETRY;
         let (instance_key, material_key) = (data.instance_key, data.material_key);
-        let instances = graph.import_buffer::<types::Instance>("scene.instances", &data.instances, instance_key, placed);
+        let instances =
+            graph.import_buffer::<types::Instance>("scene.instances", &data.instances, instance_key, placed);
         let indices = graph.import_buffer::<u32>("scene.indices", &data.meshes.indices, instance_key, placed);
-        let positions = graph.import_buffer::<f32>("scene.positions", &data.meshes.positions.buffer, instance_key, placed);
-        let materials = graph.import_buffer::<types::Material>("scene.materials", &data.materials, material_key, Dependence::MATERIALS);
-        let uses = graph.import_buffer::<types::MaterialTextures>("scene.material_textures", &data.material_textures, material_key, Dependence::MATERIALS);
+        let positions =
+            graph.import_buffer::<f32>("scene.positions", &data.meshes.positions.buffer, instance_key, placed);
+        let materials = graph.import_buffer::<types::Material>(
+            "scene.materials",
+            &data.materials,
+            material_key,
+            Dependence::MATERIALS,
+        );
+        let uses = graph.import_buffer::<types::MaterialTextures>(
+            "scene.material_textures",
+            &data.material_textures,
+            material_key,
+            Dependence::MATERIALS,
+        );
         Geometry {
             instances: instances.read(),
             materials: materials.read(),
@@ -98,12 +110,20 @@ pub(crate) struct DrawView {
 
 impl DrawView {
     /// Of a matrix that maps render space to clip space, columns first, reverse-Z.
-    pub(crate) fn new(view_projection: &[[f32; 4]; 4], viewport: Option<([f32; 4], [u32; 4])>, push: Option<Vec<u8>>) -> DrawView {
+    pub(crate) fn new(
+        view_projection: &[[f32; 4]; 4],
+        viewport: Option<([f32; 4], [u32; 4])>,
+        push: Option<Vec<u8>>,
+    ) -> DrawView {
         let row = |index: usize| [0, 1, 2, 3].map(|column| view_projection[column][index]);
         let [x, y, z, w] = [row(0), row(1), row(2), row(3)];
         let plane = |sign: f32, axis: [f32; 4]| [0, 1, 2, 3].map(|index| w[index] + sign * axis[index]);
         // Left, right, top, bottom, near (z ≤ w); reversed depth 0 is infinitely far when perspective.
-        DrawView { planes: vec![plane(1.0, x), plane(-1.0, x), plane(1.0, y), plane(-1.0, y), plane(-1.0, z)], viewport, push }
+        DrawView {
+            planes: vec![plane(1.0, x), plane(-1.0, x), plane(1.0, y), plane(-1.0, y), plane(-1.0, z)],
+            viewport,
+            push,
+        }
     }
 
     fn sees(&self, drawn: &DrawnInstance) -> bool {
@@ -117,7 +137,12 @@ impl DrawView {
 }
 
 /// The draws of the instances that `takes` accepts, in each view.
-pub(crate) fn draw_list(data: &SceneData, attributes: Attributes, views: &[DrawView], takes: impl Fn(&DrawnInstance) -> bool) -> DrawList {
+pub(crate) fn draw_list(
+    data: &SceneData,
+    attributes: Attributes,
+    views: &[DrawView],
+    takes: impl Fn(&DrawnInstance) -> bool,
+) -> DrawList {
     let mut groups: Vec<DrawGroup> = Vec::new();
     let by_material = attributes.binds_materials();
     for view in views {
@@ -125,15 +150,26 @@ pub(crate) fn draw_list(data: &SceneData, attributes: Attributes, views: &[DrawV
         for (instance, drawn) in (0..).zip(&data.drawn) {
             if drawn.index_count > 0 && takes(drawn) && view.sees(drawn) {
                 let DrawnInstance { index_count, first_index, vertex_offset, material, .. } = *drawn;
-                calls.push((by_material.then_some(material), DrawCall { index_count, first_index, vertex_offset, instance }));
+                calls.push((
+                    by_material.then_some(material),
+                    DrawCall { index_count, first_index, vertex_offset, instance },
+                ));
             }
         }
         calls.sort_by_key(|(material, call)| (*material, call.instance));
         for run in calls.chunk_by(|a, b| a.0 == b.0) {
-            groups.push(DrawGroup { viewport: view.viewport, push: view.push.clone(), material: run[0].0, calls: run.iter().map(|(_, call)| *call).collect() });
+            groups.push(DrawGroup {
+                viewport: view.viewport,
+                push: view.push.clone(),
+                material: run[0].0,
+                calls: run.iter().map(|(_, call)| *call).collect(),
+            });
         }
     }
-    let described: Vec<_> = groups.iter().map(|group| (format!("{:?}", group.viewport), &group.push, group.material, &group.calls)).collect();
+    let described: Vec<_> = groups
+        .iter()
+        .map(|group| (format!("{:?}", group.viewport), &group.push, group.material, &group.calls))
+        .collect();
     let key = hash_of(&(described, data.instance_key, if by_material { data.material_key } else { 0 }));
     DrawList {
         vertices: attributes.streams(data).into_iter().map(|(_, _, stream)| stream.buffer).collect(),

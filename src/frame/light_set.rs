@@ -30,7 +30,13 @@ pub(crate) struct LightSet {
 
 impl LightSet {
     /// The lights of the scene as it is now; `held` if nothing that they depend on changed.
-    pub(crate) fn update(held: LightSet, scene: &Scene, data: &SceneData, settings: &Settings, largest_side: u32) -> LightSet {
+    pub(crate) fn update(
+        held: LightSet,
+        scene: &Scene,
+        data: &SceneData,
+        settings: &Settings,
+        largest_side: u32,
+    ) -> LightSet {
         let revisions = scene.revisions();
         // Directional views are fitted to the geometry.
         let options = serde_json::to_string(&(&settings.lights, &settings.shadow)).unwrap_or_default();
@@ -64,7 +70,13 @@ impl Builder<'_> {
 
     fn source(&self, origin_rs: DVec3, resolution: u32, intensity: [f32; 3]) -> ViewSource {
         let strength = f64::from(intensity.into_iter().fold(0.0, f32::max));
-        ViewSource { origin_rs, near: self.near(), resolution: resolution.next_multiple_of(16), strength, light: self.lights.len() as u32 }
+        ViewSource {
+            origin_rs,
+            near: self.near(),
+            resolution: resolution.next_multiple_of(16),
+            strength,
+            light: self.lights.len() as u32,
+        }
     }
 
     fn add(&mut self, mut light: types::Light, shapes: Vec<ViewShape>) {
@@ -100,7 +112,11 @@ impl Builder<'_> {
                     let (scale, offset) = spot_falloff(f64::from(inner_angle), f64::from(outer_angle));
                     let light = types::Light { kind: SPOT, spot_scale: scale, spot_offset: offset, ..light };
                     let outer = f64::from(outer_angle);
-                    let shapes = if outer > WIDEST_CONE { ViewShape::cube(source, axes) } else { ViewShape::cone(source, axes, outer.tan()) };
+                    let shapes = if outer > WIDEST_CONE {
+                        ViewShape::cube(source, axes)
+                    } else {
+                        ViewShape::cone(source, axes, outer.tan())
+                    };
                     self.add(light, shapes);
                 }
                 LightKind::Directional => {
@@ -193,7 +209,12 @@ fn vertices_of(scene: &Scene, origin: DVec3) -> Vec<DVec3> {
     let mut vertices = Vec::new();
     for instance in scene.instances() {
         let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
-        vertices.extend(primitive.positions.iter().map(|&position| instance.world.transform_point3(DVec3::from(position.map(f64::from))) - origin));
+        vertices.extend(
+            primitive
+                .positions
+                .iter()
+                .map(|&position| instance.world.transform_point3(DVec3::from(position.map(f64::from))) - origin),
+        );
     }
     vertices
 }

@@ -31,7 +31,13 @@ pub(crate) struct ReflectiveViews {
 }
 
 /// Declares the views; `reflective` asks for normals and flux besides depth.
-pub(crate) fn light_views(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, set: &LightSet, reflective: bool) -> (LightViews, Option<ReflectiveViews>) {
+pub(crate) fn light_views(
+    graph: &mut Graph<'_>,
+    data: &SceneData,
+    geometry: &Geometry,
+    set: &LightSet,
+    reflective: bool,
+) -> (LightViews, Option<ReflectiveViews>) {
     let size = set.atlas.size.map(|side| side.max(1));
     let records: Vec<types::LightView> = set.atlas.views.iter().map(|view| view.record).collect();
     let lights = graph.upload("light_views.lights", &set.lights, Dependence::LIGHTS);
@@ -46,7 +52,8 @@ pub(crate) fn light_views(graph: &mut Graph<'_>, data: &SceneData, geometry: &Ge
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
         flux: graph.image("light_views.flux", vk::Format::R16G16B16A16_SFLOAT, size),
     });
-    let draw_views: Vec<DrawView> = (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();
+    let draw_views: Vec<DrawView> =
+        (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();
     match reflective {
         Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
         None => draw_depth(graph, data, geometry, &made, &draw_views),
@@ -58,7 +65,11 @@ fn draw_view(index: u32, view: &super::view_layout::LaidOutView) -> DrawView {
     let [x, y] = view.record.rect_origin.map(i32::cast_unsigned);
     let [width, height] = view.record.rect_size.map(i32::cast_unsigned);
     let viewport = [x as f32, y as f32, view.full_size[0] as f32, view.full_size[1] as f32];
-    DrawView::new(&view.record.view_projection, Some((viewport, [x, y, width, height])), Some(index.to_le_bytes().to_vec()))
+    DrawView::new(
+        &view.record.view_projection,
+        Some((viewport, [x, y, width, height])),
+        Some(index.to_le_bytes().to_vec()),
+    )
 }
 
 fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, views: &[DrawView]) {
@@ -88,7 +99,14 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
     pass.depth(made.depth, None).draw(list);
 }
 
-fn draw_reflective(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, targets: ReflectiveViews, views: &[DrawView]) {
+fn draw_reflective(
+    graph: &mut Graph<'_>,
+    data: &SceneData,
+    geometry: &Geometry,
+    made: &LightViews,
+    targets: ReflectiveViews,
+    views: &[DrawView],
+) {
     let plain = light_views::Reflective {
         instances: geometry.instances.clone(),
         materials: geometry.materials.clone(),

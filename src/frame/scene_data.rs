@@ -80,7 +80,12 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     /// Uploads what changed since `held`, or everything.
-    pub(crate) fn update(device: &Arc<Device>, pipelines: &Pipelines, held: Option<SceneData>, scene: &Scene) -> Result<SceneData, VulkanError> {
+    pub(crate) fn update(
+        device: &Arc<Device>,
+        pipelines: &Pipelines,
+        held: Option<SceneData>,
+        scene: &Scene,
+    ) -> Result<SceneData, VulkanError> {
         let revisions = scene.revisions();
         let mesh_key = hash_of(&(scene.identity(), scene.meshes().len()));
         let material_key = hash_of(&(scene.identity(), revisions.materials));
@@ -100,7 +105,12 @@ impl SceneData {
         Ok(data)
     }
 
-    fn new(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene, [mesh_key, material_key, instance_key]: [u64; 3]) -> Result<SceneData, VulkanError> {
+    fn new(
+        device: &Arc<Device>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+        [mesh_key, material_key, instance_key]: [u64; 3],
+    ) -> Result<SceneData, VulkanError> {
         let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) });
         let meshes = MeshData::upload(device, scene)?;
         let (materials, material_textures, texture_sets) = upload_materials(device, pipelines, scene)?;
@@ -154,23 +164,50 @@ impl MeshData {
                 let index_count = narrow(primitive.indices.len())?;
                 let place = Place { first_index, index_count, vertex_offset, bounds: box_of(&primitive.positions) };
                 first_index = first_index.checked_add(index_count).ok_or_else(too_many)?;
-                vertex_offset = i32::try_from(primitive.positions.len()).ok().and_then(|count| vertex_offset.checked_add(count)).ok_or_else(too_many)?;
+                vertex_offset = i32::try_from(primitive.positions.len())
+                    .ok()
+                    .and_then(|count| vertex_offset.checked_add(count))
+                    .ok_or_else(too_many)?;
                 Ok(place)
             };
             places.push(mesh.primitives.iter().map(place).collect::<Result<Vec<_>, VulkanError>>()?);
         }
         let indices: Vec<u32> = primitives.iter().flat_map(|primitive| primitive.indices.iter().copied()).collect();
-        let positions: Vec<[f32; 3]> = primitives.iter().flat_map(|primitive| primitive.positions.iter().copied()).collect();
+        let positions: Vec<[f32; 3]> =
+            primitives.iter().flat_map(|primitive| primitive.positions.iter().copied()).collect();
         let texel = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let vertex = vk::BufferUsageFlags::VERTEX_BUFFER;
         let stream = |name: &str, bytes: &[u8], stride: u32, usage| {
             let buffer = buffer_with(device, name, bytes, usage)?;
-            Ok::<_, VulkanError>(Stream { buffer, stride: if bytes.len() as u64 == u64::from(stride) { 0 } else { stride } })
+            Ok::<_, VulkanError>(Stream {
+                buffer,
+                stride: if bytes.len() as u64 == u64::from(stride) { 0 } else { stride },
+            })
         };
-        let normals = gather(&primitives, vertices, [0, 0, i16::MAX, 0], |primitive| primitive.normals.as_deref(), |&[x, y, z]| [snorm(x), snorm(y), snorm(z), 0]);
-        let tangents = gather(&primitives, vertices, [i16::MAX, 0, 0, i16::MAX], |primitive| primitive.tangents.as_deref(), |tangent| tangent.map(snorm));
-        let colors = gather(&primitives, vertices, [u8::MAX; 4], |primitive| primitive.colors.as_deref(), |color| color.map(unorm));
-        let texcoords = |set: usize| gather(&primitives, vertices, [0.0_f32; 2], |primitive| primitive.texcoords[set].as_deref(), |&uv| uv);
+        let normals = gather(
+            &primitives,
+            vertices,
+            [0, 0, i16::MAX, 0],
+            |primitive| primitive.normals.as_deref(),
+            |&[x, y, z]| [snorm(x), snorm(y), snorm(z), 0],
+        );
+        let tangents = gather(
+            &primitives,
+            vertices,
+            [i16::MAX, 0, 0, i16::MAX],
+            |primitive| primitive.tangents.as_deref(),
+            |tangent| tangent.map(snorm),
+        );
+        let colors = gather(
+            &primitives,
+            vertices,
+            [u8::MAX; 4],
+            |primitive| primitive.colors.as_deref(),
+            |color| color.map(unorm),
+        );
+        let texcoords = |set: usize| {
+            gather(&primitives, vertices, [0.0_f32; 2], |primitive| primitive.texcoords[set].as_deref(), |&uv| uv)
+        };
         Ok(MeshData {
             positions: stream("scene.positions", bytemuck::cast_slice(&positions), 12, vertex | texel)?,
             normals: stream("scene.normals", bytemuck::cast_slice(&normals), 8, vertex)?,
@@ -180,7 +217,12 @@ impl MeshData {
                 stream("scene.texcoords.1", bytemuck::cast_slice(&texcoords(1)), 8, vertex)?,
             ],
             colors: stream("scene.colors", bytemuck::cast_slice(&colors), 4, vertex)?,
-            indices: buffer_with(device, "scene.indices", bytemuck::cast_slice(&indices), vk::BufferUsageFlags::INDEX_BUFFER | texel)?,
+            indices: buffer_with(
+                device,
+                "scene.indices",
+                bytemuck::cast_slice(&indices),
+                vk::BufferUsageFlags::INDEX_BUFFER | texel,
+            )?,
             places,
         })
     }
@@ -216,7 +258,11 @@ fn unorm(value: f32) -> u8 {
 }
 
 fn too_many() -> VulkanError {
-    VulkanError::TooLarge { what: "the scene".to_owned(), asked: "more vertices or indices than 31 bits count".to_owned(), limit: "2³¹".to_owned() }
+    VulkanError::TooLarge {
+        what: "the scene".to_owned(),
+        asked: "more vertices or indices than 31 bits count".to_owned(),
+        limit: "2³¹".to_owned(),
+    }
 }
 
 fn narrow(count: usize) -> Result<u32, VulkanError> {
@@ -234,7 +280,12 @@ fn box_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
     if positions.is_empty() { [[0.0; 3]; 2] } else { bounds }
 }
 
-fn upload_instances(device: &Arc<Device>, scene: &Scene, meshes: &MeshData, origin: DVec3) -> Result<(Arc<Buffer>, Vec<DrawnInstance>), VulkanError> {
+fn upload_instances(
+    device: &Arc<Device>,
+    scene: &Scene,
+    meshes: &MeshData,
+    origin: DVec3,
+) -> Result<(Arc<Buffer>, Vec<DrawnInstance>), VulkanError> {
     let mut records = Vec::new();
     let mut drawn = Vec::new();
     for instance in scene.instances() {
@@ -244,7 +295,8 @@ fn upload_instances(device: &Arc<Device>, scene: &Scene, meshes: &MeshData, orig
         let material = &scene.materials()[primitive.material.0];
         drawn.push(drawn_instance(instance, place, primitive.material.0, material, origin));
     }
-    let buffer = buffer_with(device, "scene.instances", bytemuck::cast_slice(&records), vk::BufferUsageFlags::STORAGE_BUFFER)?;
+    let buffer =
+        buffer_with(device, "scene.instances", bytemuck::cast_slice(&records), vk::BufferUsageFlags::STORAGE_BUFFER)?;
     Ok((buffer, drawn))
 }
 
@@ -278,11 +330,18 @@ fn instance_record(instance: &Instance, primitive: &Primitive, place: Place, ori
     }
 }
 
-fn drawn_instance(instance: &Instance, place: Place, index: usize, material: &Material, origin: DVec3) -> DrawnInstance {
+fn drawn_instance(
+    instance: &Instance,
+    place: Place,
+    index: usize,
+    material: &Material,
+    origin: DVec3,
+) -> DrawnInstance {
     let [low, high] = place.bounds.map(|corner| DVec3::from(corner.map(f64::from)));
     let to_render = DAffine3 { matrix3: instance.world.matrix3, translation: instance.world.translation - origin };
     let half = (high - low) * 0.5;
-    let axes = [to_render.matrix3.x_axis * half.x, to_render.matrix3.y_axis * half.y, to_render.matrix3.z_axis * half.z];
+    let axes =
+        [to_render.matrix3.x_axis * half.x, to_render.matrix3.y_axis * half.y, to_render.matrix3.z_axis * half.z];
     DrawnInstance {
         first_index: place.first_index,
         index_count: place.index_count,
@@ -301,9 +360,14 @@ type Materials = (Arc<Buffer>, Arc<Buffer>, Option<MaterialTextureSets>);
 fn upload_materials(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene) -> Result<Materials, VulkanError> {
     let arrays = TextureArrays::upload(device, scene)?;
     let records: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
-    let uses: Vec<types::MaterialTextures> = scene.materials().iter().map(|material| arrays.uses_of(material)).collect();
+    let uses: Vec<types::MaterialTextures> =
+        scene.materials().iter().map(|material| arrays.uses_of(material)).collect();
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let sets = if scene.textures().is_empty() { None } else { Some(MaterialTextureSets::new(device, pipelines, scene, arrays)?) };
+    let sets = if scene.textures().is_empty() {
+        None
+    } else {
+        Some(MaterialTextureSets::new(device, pipelines, scene, arrays)?)
+    };
     let materials = buffer_with(device, "scene.materials", bytemuck::cast_slice(&records), usage)?;
     // Programs that read textures alone bind the second list.
     let uses = if sets.is_some() { uses } else { Vec::new() };

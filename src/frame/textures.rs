@@ -10,7 +10,10 @@ use crate::graph::bindings::BindingSet;
 use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
 use crate::shaders::{gbuffer, types};
 use crate::vulkan::program::{BindingKind, ImageDim};
-use crate::vulkan::{Descriptor, Device, Image, ImageInfo, MaterialSets, Pipelines, SamplerKind, SubresourceView, VulkanError, image_with};
+use crate::vulkan::{
+    Descriptor, Device, Image, ImageInfo, MaterialSets, Pipelines, SamplerKind, SubresourceView, VulkanError,
+    image_with,
+};
 
 /// Where a texture lies.
 #[derive(Clone, Copy)]
@@ -31,14 +34,16 @@ impl TextureArrays {
         for (index, texture) in scene.textures().iter().enumerate() {
             groups.entry((texture.width, texture.height, texture.srgb)).or_default().push(index);
         }
-        let mut made = TextureArrays { arrays: Vec::new(), layers: vec![Layer { array: 0, layer: 0 }; scene.textures().len()] };
+        let mut made =
+            TextureArrays { arrays: Vec::new(), layers: vec![Layer { array: 0, layer: 0 }; scene.textures().len()] };
         let most = device.limits().max_image_array_layers as usize;
         for ((width, height, srgb), members) in groups {
             for members in members.chunks(most) {
                 for (layer, &member) in (0..).zip(members) {
                     made.layers[member] = Layer { array: made.arrays.len(), layer };
                 }
-                let texels: Vec<&[u8]> = members.iter().map(|&member| scene.textures()[member].rgba8.as_slice()).collect();
+                let texels: Vec<&[u8]> =
+                    members.iter().map(|&member| scene.textures()[member].rgba8.as_slice()).collect();
                 let name = format!("scene.textures.{width}x{height}{}", if srgb { ".srgb" } else { "" });
                 made.arrays.push(image_with(device, &name, array_info(width, height, srgb, texels.len()), &texels)?);
             }
@@ -91,14 +96,30 @@ pub(crate) struct MaterialTextureSets {
 }
 
 impl MaterialTextureSets {
-    pub(super) fn new(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene, textures: TextureArrays) -> Result<MaterialTextureSets, VulkanError> {
+    pub(super) fn new(
+        device: &Arc<Device>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+        textures: TextureArrays,
+    ) -> Result<MaterialTextureSets, VulkanError> {
         let none = textures.arrays.len() - 1;
         let descriptor = |texture: Option<TextureRef>| -> Result<Descriptor, VulkanError> {
             let place = texture.map(|texture| textures.layers[texture.texture.0].array).unwrap_or(none);
-            let kind = texture.map(|texture| sampler_of(&scene.textures()[texture.texture.0])).unwrap_or(SamplerKind::NearestClamp);
+            let kind = texture
+                .map(|texture| sampler_of(&scene.textures()[texture.texture.0]))
+                .unwrap_or(SamplerKind::NearestClamp);
             let image = &textures.arrays[place];
-            let what = SubresourceView { dim: ImageDim::D2Array, mips: 0..image.info.mips, aspect: vk::ImageAspectFlags::COLOR, format: image.info.format };
-            Ok(Descriptor::Image { view: image.view(&what)?, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, sampler: pipelines.sampler(kind)? })
+            let what = SubresourceView {
+                dim: ImageDim::D2Array,
+                mips: 0..image.info.mips,
+                aspect: vk::ImageAspectFlags::COLOR,
+                format: image.info.format,
+            };
+            Ok(Descriptor::Image {
+                view: image.view(&what)?,
+                layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+                sampler: pipelines.sampler(kind)?,
+            })
         };
         let mut sets = Vec::new();
         for material in scene.materials() {

@@ -1,11 +1,11 @@
 //! Display values: tone curve, sRGB encoding, 8 bits. `crate::output::tonemap` is the same on the host.
 
-use ash::vk;
-
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::renderer::ToneMap;
-use crate::shaders::tonemap::{Adaptation, AdaptationPush, LogLuminance, LogLuminancePush, Luminance, LuminancePush, Map, MapPush};
+use crate::shaders::tonemap::{
+    Adaptation, AdaptationPush, LogLuminance, LogLuminancePush, Luminance, LuminancePush, Map, MapPush,
+};
 use crate::shaders::types;
 
 const PIXELS_PER_INVOCATION: u32 = 16;
@@ -33,7 +33,8 @@ pub(crate) fn tonemap(graph: &mut Graph<'_>, image: ImageRef, curve: ToneMap) ->
         graph.pass("tonemap/log-luminance", pass).groups([block_count, 1, 1]);
 
         let push = AdaptationPush { block_count, pixel_count: pixels };
-        let pass = Adaptation { blocks: blocks.read(), log_sums: log_sums.read(), adaptation: adaptation.write(), push };
+        let pass =
+            Adaptation { blocks: blocks.read(), log_sums: log_sums.read(), adaptation: adaptation.write(), push };
         graph.pass("tonemap/adaptation", pass).groups([1, 1, 1]);
     }
 
@@ -42,7 +43,8 @@ pub(crate) fn tonemap(graph: &mut Graph<'_>, image: ImageRef, curve: ToneMap) ->
         ToneMap::Aces => 1,
         ToneMap::Drago => 2,
     };
-    let pass = Map { image: image.sampled(), adaptation: adaptation.read(), display: display.write(), push: MapPush { mode } };
+    let pass =
+        Map { image: image.sampled(), adaptation: adaptation.read(), display: display.write(), push: MapPush { mode } };
     graph.pass("tonemap/map", pass).pixels([width, height]);
     display
 }

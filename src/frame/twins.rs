@@ -21,11 +21,7 @@ pub fn luminance(color: Vec3) -> f32 {
 #[must_use]
 pub fn srgb_encode(linear: Vec3) -> Vec3 {
     let encode = |x: f32| {
-        if x <= 0.003_130_8 {
-            12.92 * x
-        } else {
-            1.055 * x.powf(1.0 / 2.4) - 0.055
-        }
+        if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
     };
     Vec3::new(encode(linear.x), encode(linear.y), encode(linear.z))
 }
@@ -34,11 +30,7 @@ pub fn srgb_encode(linear: Vec3) -> Vec3 {
 #[must_use]
 pub fn octahedral_encode(direction: Vec3) -> Vec2 {
     let square = Vec2::new(direction.x, direction.y) / direction.abs().element_sum();
-    if direction.z >= 0.0 {
-        square
-    } else {
-        (Vec2::ONE - Vec2::new(square.y, square.x).abs()) * sign_not_zero(square)
-    }
+    if direction.z >= 0.0 { square } else { (Vec2::ONE - Vec2::new(square.y, square.x).abs()) * sign_not_zero(square) }
 }
 
 /// The point of the octahedron: its components' absolute values sum to one (`lib/octahedral.glsl`).
@@ -59,8 +51,7 @@ pub fn octahedral_decode(square: Vec2) -> Vec3 {
 #[must_use]
 pub fn pack_direction(direction: Vec3) -> u32 {
     let square = octahedral_encode(direction);
-    let snorm16 =
-        |x: f32| u32::from(((x.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
+    let snorm16 = |x: f32| u32::from(((x.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
     snorm16(square.y) << 16 | snorm16(square.x)
 }
 
@@ -185,9 +176,7 @@ pub fn diffuse_brdf(surface: &Scatterer, v_dot_h: f32) -> Vec3 {
 /// GGX with Smith's height-correlated masking and Schlick's Fresnel, in 1/sr (`lib/brdf.glsl`).
 #[must_use]
 pub fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
-    let middle = (to_light + to_eye)
-        .try_normalize()
-        .unwrap_or(surface.normal);
+    let middle = (to_light + to_eye).try_normalize().unwrap_or(surface.normal);
     let n_dot_l = surface.normal.dot(to_light).max(1e-4);
     let n_dot_v = surface.normal.dot(to_eye).max(1e-4);
     let n_dot_h = surface.normal.dot(middle).clamp(0.0, 1.0);
@@ -204,9 +193,7 @@ pub fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 
 /// Both lobes, in 1/sr (`lib/brdf.glsl`).
 #[must_use]
 pub fn surface_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
-    let middle = (to_light + to_eye)
-        .try_normalize()
-        .unwrap_or(surface.normal);
+    let middle = (to_light + to_eye).try_normalize().unwrap_or(surface.normal);
     diffuse_brdf(surface, to_eye.dot(middle)) + specular_brdf(surface, to_light, to_eye)
 }
 
@@ -221,10 +208,7 @@ pub fn indirect_diffuse_albedo(diffuse_albedo: Vec3, f0: Vec3, f90: f32) -> Vec3
 pub fn pack_vpl(position_rs: Vec3, normal: Vec3, flux: Vec3, area: f32) -> [Vec4; 2] {
     let word = pack_direction_in_float(normal);
     let length = unpack_direction_in_float_unnormalized(word).length();
-    [
-        position_rs.extend((area * FRAC_1_PI).max(1e-16)),
-        (flux * (FRAC_1_PI / length)).extend(word),
-    ]
+    [position_rs.extend((area * FRAC_1_PI).max(1e-16)), (flux * (FRAC_1_PI / length)).extend(word)]
 }
 
 /// The reflected flux, in W, of a virtual point light's two texels: the inverse of what [`pack_vpl`] did to it.
@@ -248,17 +232,8 @@ pub fn vpl_irradiance(vpl: [Vec4; 2], position_rs: Vec3, normal: Vec3) -> Vec3 {
 /// Returns shading normal, geometric normal, albedo and roughness.
 #[must_use]
 pub fn unpack_surface(texel: UVec4) -> (Vec3, Vec3, Vec3, f32) {
-    let albedo = Vec3::new(
-        half_to_float(texel.z),
-        half_to_float(texel.z >> 16),
-        half_to_float(texel.w),
-    );
-    (
-        unpack_direction(texel.x),
-        unpack_direction(texel.y),
-        albedo,
-        (texel.w >> 16) as f32 / 65535.0,
-    )
+    let albedo = Vec3::new(half_to_float(texel.z), half_to_float(texel.z >> 16), half_to_float(texel.w));
+    (unpack_direction(texel.x), unpack_direction(texel.y), albedo, (texel.w >> 16) as f32 / 65535.0)
 }
 
 /// Narkowicz's fit of the ACES curve (`lib/tonemap.glsl`).
@@ -278,10 +253,7 @@ pub fn tonemap_drago_scale(scaled_luminance: f32, scaled_maximum: f32, bias: f32
 }
 
 fn sign_not_zero(v: Vec2) -> Vec2 {
-    Vec2::new(
-        if v.x >= 0.0 { 1.0 } else { -1.0 },
-        if v.y >= 0.0 { 1.0 } else { -1.0 },
-    )
+    Vec2::new(if v.x >= 0.0 { 1.0 } else { -1.0 }, if v.y >= 0.0 { 1.0 } else { -1.0 })
 }
 
 /// The low 16 bits as an IEEE half; only the positive finite ones that albedos are.
@@ -305,19 +277,12 @@ mod tests {
             let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
             let azimuth = f64::from(i) * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
             let radius = (1.0 - z * z).sqrt();
-            Vec3::new(
-                (radius * azimuth.cos()) as f32,
-                (radius * azimuth.sin()) as f32,
-                z as f32,
-            )
+            Vec3::new((radius * azimuth.cos()) as f32, (radius * azimuth.sin()) as f32, z as f32)
         })
     }
 
     fn assert_close(actual: f64, expected: f64, relative: f64) {
-        assert!(
-            (actual - expected).abs() <= relative * expected.abs(),
-            "{actual} is not {expected} within {relative}"
-        );
+        assert!((actual - expected).abs() <= relative * expected.abs(), "{actual} is not {expected} within {relative}");
     }
 
     #[test]
@@ -326,32 +291,17 @@ mod tests {
             let error = unpack_direction(pack_direction(direction)).distance(direction);
             assert!(error < 7e-5, "{direction}: {error}");
             let word = pack_direction_in_float(direction);
-            assert!(
-                word.is_normal() && word.is_sign_positive(),
-                "{direction}: {word}"
-            );
-            let error = unpack_direction_in_float_unnormalized(word)
-                .normalize()
-                .distance(direction);
+            assert!(word.is_normal() && word.is_sign_positive(), "{direction}: {word}");
+            let error = unpack_direction_in_float_unnormalized(word).normalize().distance(direction);
             assert!(error < 1.2e-4, "{direction}: {error}");
         }
     }
 
     #[test]
     fn axes_survive_packing_exactly() {
-        for axis in [
-            Vec3::X,
-            Vec3::NEG_X,
-            Vec3::Y,
-            Vec3::NEG_Y,
-            Vec3::Z,
-            Vec3::NEG_Z,
-        ] {
+        for axis in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
             assert_eq!(unpack_direction(pack_direction(axis)), axis);
-            assert_eq!(
-                unpack_direction_in_float_unnormalized(pack_direction_in_float(axis)),
-                axis
-            );
+            assert_eq!(unpack_direction_in_float_unnormalized(pack_direction_in_float(axis)), axis);
         }
     }
 
@@ -380,52 +330,30 @@ mod tests {
     #[test]
     fn a_texel_far_off_the_axis_shrinks_with_the_cube_of_the_cosine() {
         let step = 1e-3_f32;
-        for tangent in [
-            Vec2::ZERO,
-            Vec2::new(1.0, 1.0),
-            Vec2::new(3.7, -2.0),
-            Vec2::new(40.0, 0.0),
-        ] {
+        for tangent in [Vec2::ZERO, Vec2::new(1.0, 1.0), Vec2::new(3.7, -2.0), Vec2::new(40.0, 0.0)] {
             let cosine = f64::from(1.0 + tangent.length_squared()).sqrt().recip();
             let expected = f64::from(step) * f64::from(step) * cosine.powi(3);
-            assert_close(
-                f64::from(solid_angle_of_texel(tangent, step)),
-                expected,
-                1e-5,
-            );
+            assert_close(f64::from(solid_angle_of_texel(tangent, step)), expected, 1e-5);
         }
     }
 
     /// ∫ I dω = 2π((1 − cos i) + (cos i − cos o)/3) for glTF's squared linear falloff between the cones.
     #[test]
     fn the_texels_of_a_spot_view_add_up_to_its_power() {
-        for (inner, outer) in [
-            (10.0_f32, 15.0_f32),
-            (20.0, 45.0),
-            (0.0, 60.0),
-            (74.0, 75.0),
-        ] {
+        for (inner, outer) in [(10.0_f32, 15.0_f32), (20.0, 45.0), (0.0, 60.0), (74.0, 75.0)] {
             let (inner, outer) = (inner.to_radians(), outer.to_radians());
             let (scale, offset) = spot_scale_and_offset(inner, outer);
             let size = 512_u32;
             let step = 2.0 * outer.tan() * 1.02 / size as f32;
             let sum: f64 = (0..size * size)
-                .map(|i| {
-                    (Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5)
-                        - size as f32 / 2.0)
-                        * step
-                })
+                .map(|i| (Vec2::new((i % size) as f32 + 0.5, (i / size) as f32 + 0.5) - size as f32 / 2.0) * step)
                 .map(|tangent| {
                     let cosine = (1.0 + tangent.length_squared()).sqrt().recip();
-                    f64::from(
-                        spot_attenuation(cosine, scale, offset)
-                            * solid_angle_of_texel(tangent, step),
-                    )
+                    f64::from(spot_attenuation(cosine, scale, offset) * solid_angle_of_texel(tangent, step))
                 })
                 .sum();
             let (cos_inner, cos_outer) = (f64::from(inner.cos()), f64::from(outer.cos()));
-            let power =
-                2.0 * std::f64::consts::PI * ((1.0 - cos_inner) + (cos_inner - cos_outer) / 3.0);
+            let power = 2.0 * std::f64::consts::PI * ((1.0 - cos_inner) + (cos_inner - cos_outer) / 3.0);
             assert_close(sum, power, 0.005);
         }
     }
@@ -440,14 +368,7 @@ mod tests {
 
     #[test]
     fn every_axis_has_its_own_face() {
-        let axes = [
-            Vec3::X,
-            Vec3::NEG_X,
-            Vec3::Y,
-            Vec3::NEG_Y,
-            Vec3::Z,
-            Vec3::NEG_Z,
-        ];
+        let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         for (face, axis) in (0..).zip(axes) {
             assert_eq!(major_axis_face(axis), face);
         }
@@ -456,13 +377,7 @@ mod tests {
     /// ∫ f cosθ dω over a stratified hemisphere of half vectors, for a light seen from `cos_eye`: at most 1 for white, as GGX
     /// with single scattering loses light and gains none.
     fn white_specular_albedo(roughness: f32, cos_eye: f32) -> f64 {
-        let surface = Scatterer {
-            normal: Vec3::Z,
-            diffuse_albedo: Vec3::ZERO,
-            f0: Vec3::ONE,
-            f90: 1.0,
-            roughness,
-        };
+        let surface = Scatterer { normal: Vec3::Z, diffuse_albedo: Vec3::ZERO, f0: Vec3::ONE, f90: 1.0, roughness };
         let to_eye = Vec3::new((1.0 - cos_eye * cos_eye).sqrt(), 0.0, cos_eye);
         let alpha = (roughness * roughness).max(MINIMUM_ALPHA);
         let strata = 200_u32;
@@ -493,10 +408,7 @@ mod tests {
         for roughness in [0.05, 0.2, 0.5, 0.8, 1.0] {
             for cos_eye in [0.1, 0.5, 1.0] {
                 let albedo = white_specular_albedo(roughness, cos_eye);
-                assert!(
-                    albedo < 1.001 && albedo > 0.3,
-                    "roughness {roughness}, cosine {cos_eye}: {albedo}"
-                );
+                assert!(albedo < 1.001 && albedo > 0.3, "roughness {roughness}, cosine {cos_eye}: {albedo}");
             }
         }
         assert_close(white_specular_albedo(0.05, 1.0), 1.0, 0.001);
@@ -514,14 +426,8 @@ mod tests {
         let upper: Vec<Vec3> = directions(200).filter(|d| d.z > 0.01).collect();
         for &l in &upper {
             for &v in &upper {
-                let (there, back) = (
-                    surface_brdf(&surface(0.4), l, v),
-                    surface_brdf(&surface(0.4), v, l),
-                );
-                assert!(
-                    there.abs_diff_eq(back, 1e-4 * there.x),
-                    "{l} {v}: {there} {back}"
-                );
+                let (there, back) = (surface_brdf(&surface(0.4), l, v), surface_brdf(&surface(0.4), v, l));
+                assert!(there.abs_diff_eq(back, 1e-4 * there.x), "{l} {v}: {there} {back}");
                 assert!(surface_brdf(&surface(0.0), l, v).is_finite());
             }
         }
@@ -533,10 +439,7 @@ mod tests {
         let steps = 100_000;
         let mean: f64 = (0..steps)
             .map(|i| (f64::from(i) + 0.5) / f64::from(steps))
-            .map(|mu| {
-                f64::from(schlick_fresnel(Vec3::splat(0.04), 1.0, mu as f32).x) * 2.0 * mu
-                    / f64::from(steps)
-            })
+            .map(|mu| f64::from(schlick_fresnel(Vec3::splat(0.04), 1.0, mu as f32).x) * 2.0 * mu / f64::from(steps))
             .sum();
         let albedo = indirect_diffuse_albedo(Vec3::ONE, Vec3::splat(0.04), 1.0);
         assert_close(f64::from(albedo.x), 1.0 - mean, 1e-5);
@@ -552,10 +455,7 @@ mod tests {
             // The disc's exact irradiance on its axis: πL·R²/(R² + d²) with L = Φ/(πA), A = πR².
             let radius2 = area / PI;
             let expected = flux * (radius2 / (area * (radius2 + distance * distance)));
-            assert!(
-                irradiance.abs_diff_eq(expected, 1e-5 * expected.z),
-                "{distance}: {irradiance} {expected}"
-            );
+            assert!(irradiance.abs_diff_eq(expected, 1e-5 * expected.z), "{distance}: {irradiance} {expected}");
         }
         assert_eq!(vpl_irradiance(vpl, Vec3::ZERO, Vec3::Z), Vec3::ZERO);
         assert_eq!(vpl_irradiance(vpl, Vec3::NEG_Z, Vec3::Z), Vec3::ZERO);
@@ -568,11 +468,7 @@ mod tests {
             assert!(vpl_flux(vpl).abs_diff_eq(Vec3::splat(2.0), 1e-5));
             let facing = vpl_irradiance(vpl, Vec3::ONE + 3.0 * normal, -normal);
             let expected = 2.0 * FRAC_1_PI / (9.0 + 1e-3 * FRAC_1_PI);
-            assert!(
-                (facing.x - expected).abs() < 1e-4 * expected,
-                "{normal}: {} {expected}",
-                facing.x
-            );
+            assert!((facing.x - expected).abs() < 1e-4 * expected, "{normal}: {} {expected}", facing.x);
         }
     }
 
@@ -586,10 +482,7 @@ mod tests {
             half_of_one << 16 | half_of_one_half,
             0xFFFF_0000 | half_of_one_half,
         );
-        assert_eq!(
-            unpack_surface(texel),
-            (Vec3::Y, Vec3::NEG_Z, Vec3::new(0.5, 1.0, 0.5), 1.0)
-        );
+        assert_eq!(unpack_surface(texel), (Vec3::Y, Vec3::NEG_Z, Vec3::new(0.5, 1.0, 0.5), 1.0));
     }
 
     #[test]
@@ -597,10 +490,7 @@ mod tests {
         let mut last = (0.0, 0.0);
         for i in 1..=1000 {
             let l = 0.05 * i as f32;
-            let (aces, drago) = (
-                tonemap_aces(Vec3::splat(l)).x,
-                l * tonemap_drago_scale(l, 50.0, 0.85),
-            );
+            let (aces, drago) = (tonemap_aces(Vec3::splat(l)).x, l * tonemap_drago_scale(l, 50.0, 0.85));
             assert!(aces >= last.0 && drago >= last.1, "{l}: {aces} {drago}");
             last = (aces, drago);
         }
@@ -613,10 +503,7 @@ mod tests {
     #[test]
     fn srgb_meets_its_fixed_points() {
         let encoded = srgb_encode(Vec3::new(0.0, 0.214_041_14, 1.0));
-        assert!(
-            encoded.abs_diff_eq(Vec3::new(0.0, 0.5, 1.0), 1e-6),
-            "{encoded}"
-        );
+        assert!(encoded.abs_diff_eq(Vec3::new(0.0, 0.5, 1.0), 1e-6), "{encoded}");
     }
 
     #[test]

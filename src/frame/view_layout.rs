@@ -52,7 +52,17 @@ pub(crate) struct ViewSource {
 impl ViewShape {
     fn perspective(source: ViewSource, axes: DMat3, tangent: f64, upper_half: bool) -> ViewShape {
         let ViewSource { origin_rs, near, resolution, strength, light } = source;
-        ViewShape { axes, origin_rs, near, depth_range: 0.0, half_extent: [tangent; 2], upper_half, resolution, strength, light }
+        ViewShape {
+            axes,
+            origin_rs,
+            near,
+            depth_range: 0.0,
+            half_extent: [tangent; 2],
+            upper_half,
+            resolution,
+            strength,
+            light,
+        }
     }
 
     /// One view along `axes`' third column, as wide as the half angle whose tangent is given.
@@ -78,7 +88,10 @@ impl ViewShape {
         // The sides look outwards with the front's normal pointing up in them.
         let side = |outwards: DVec3| DMat3::from_cols((-forward).cross(outwards), -forward, outwards);
         let mut faces = vec![ViewShape::perspective(source, axes, 1.0, false)];
-        faces.extend([right, -right, down, -down].map(|outwards| ViewShape::perspective(source, side(outwards), 1.0, upper_half)));
+        faces.extend(
+            [right, -right, down, -down]
+                .map(|outwards| ViewShape::perspective(source, side(outwards), 1.0, upper_half)),
+        );
         faces
     }
 
@@ -91,7 +104,17 @@ impl ViewShape {
         let origin_rs = axes * DVec3::new(middle.x, middle.y, start);
         let ViewSource { resolution, strength, light, .. } = source;
         let half_extent = [size.x * 0.5, size.y * 0.5];
-        vec![ViewShape { axes, origin_rs, near: 0.0, depth_range, half_extent, upper_half: false, resolution, strength, light }]
+        vec![ViewShape {
+            axes,
+            origin_rs,
+            near: 0.0,
+            depth_range,
+            half_extent,
+            upper_half: false,
+            resolution,
+            strength,
+            light,
+        }]
     }
 
     /// Tangent units or metres between texels.
@@ -120,7 +143,8 @@ impl ViewShape {
         let [right, down, forward] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis].map(|axis| axis.as_vec3());
         let origin = self.origin_rs.as_vec3();
         let (near, depth_range) = (self.near as f32, self.depth_range as f32);
-        let clip = view_projection(origin, [right * reach[0] as f32, down * reach[1] as f32, forward], near, depth_range);
+        let clip =
+            view_projection(origin, [right * reach[0] as f32, down * reach[1] as f32, forward], near, depth_range);
         let signed = |texels: u32| i32::try_from(texels).unwrap_or(i32::MAX);
         let lit = self.half_extent.map(|half| half as f32);
         let record = types::LightView {
@@ -171,7 +195,10 @@ impl Atlas {
             return Atlas::default();
         }
         let texels = |shapes: &[ViewShape]| -> u64 {
-            shapes.iter().map(|shape| shape.rect_size(filter_radius).iter().map(|&side| u64::from(side)).product::<u64>()).sum()
+            shapes
+                .iter()
+                .map(|shape| shape.rect_size(filter_radius).iter().map(|&side| u64::from(side)).product::<u64>())
+                .sum()
         };
         let mut halved = false;
         while texels(&shapes) > MOST_TEXELS && shapes.iter().any(|shape| shape.resolution > 2 * TILE) {
@@ -181,7 +208,10 @@ impl Atlas {
             }
         }
         if halved {
-            tracing::warn!("{} light views are drawn at a lower resolution, so that they fit into one atlas of {MOST_TEXELS} texels", shapes.len());
+            tracing::warn!(
+                "{} light views are drawn at a lower resolution, so that they fit into one atlas of {MOST_TEXELS} texels",
+                shapes.len()
+            );
         }
         let widest = shapes.iter().map(|shape| shape.rect_size(filter_radius)[0]).max().unwrap_or(TILE);
         let square = (texels(&shapes) as f64).sqrt() as u32;
@@ -199,7 +229,8 @@ impl Atlas {
             x += rect_width;
             shelf = shelf.max(rect_height);
         }
-        let views: Vec<LaidOutView> = shapes.iter().zip(&origins).map(|(shape, &origin)| shape.record(filter_radius, origin)).collect();
+        let views: Vec<LaidOutView> =
+            shapes.iter().zip(&origins).map(|(shape, &origin)| shape.record(filter_radius, origin)).collect();
         let tiles = (0..).zip(&views).flat_map(|(index, view)| tiles_of(index, &view.record)).collect();
         Atlas { size: [width, y + shelf], views, tiles }
     }
@@ -210,7 +241,13 @@ fn tiles_of(view: u32, record: &types::LightView) -> Vec<types::LightTile> {
     let [columns, rows] = record.rect_size.map(|side| side / tile);
     let mut places: Vec<[i32; 2]> = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row])).collect();
     places.sort_by_key(|&[column, row]| spread(column.cast_unsigned()) | spread(row.cast_unsigned()) << 1);
-    places.into_iter().map(|[column, row]| types::LightTile { origin: [record.rect_origin[0] + column * tile, record.rect_origin[1] + row * tile], view }).collect()
+    places
+        .into_iter()
+        .map(|[column, row]| types::LightTile {
+            origin: [record.rect_origin[0] + column * tile, record.rect_origin[1] + row * tile],
+            view,
+        })
+        .collect()
 }
 
 /// The bits of a number below 2¹⁶, each followed by a zero.
@@ -235,12 +272,18 @@ mod tests {
         let mut shapes = ViewShape::cube(source(512, 0), DMat3::IDENTITY);
         shapes.extend(ViewShape::hemicube(source(128, 1), DMat3::IDENTITY));
         shapes.extend(ViewShape::cone(source(256, 2), DMat3::IDENTITY, 0.7));
-        shapes.extend(ViewShape::parallel(source(512, 3), DMat3::IDENTITY, DVec3::splat(-1.0), DVec3::new(4.0, 1.0, 1.0)));
+        shapes.extend(ViewShape::parallel(
+            source(512, 3),
+            DMat3::IDENTITY,
+            DVec3::splat(-1.0),
+            DVec3::new(4.0, 1.0, 1.0),
+        ));
         let atlas = Atlas::new(shapes, 1, 16384);
         let mut taken = vec![false; (atlas.size[0] * atlas.size[1]) as usize];
         let mut texels = 0;
         for view in &atlas.views {
-            let ([x, y], [width, height]) = (view.record.rect_origin.map(i32::cast_unsigned), view.record.rect_size.map(i32::cast_unsigned));
+            let ([x, y], [width, height]) =
+                (view.record.rect_origin.map(i32::cast_unsigned), view.record.rect_size.map(i32::cast_unsigned));
             assert!(x + width <= atlas.size[0] && y + height <= atlas.size[1]);
             assert_eq!((x % TILE, y % TILE, width % TILE, height % TILE), (0, 0, 0, 0));
             texels += width * height;

@@ -58,16 +58,29 @@ impl State {
             let from = self.write_stages | self.read_stages;
             let barrier = (relayout || from != Stages::NONE).then(|| dependency(from, self.write_access));
             *self = if need.writes {
-                State { layout: need.layout, write_stages: need.stages, write_access: need.access & WRITES, ..State::default() }
+                State {
+                    layout: need.layout,
+                    write_stages: need.stages,
+                    write_access: need.access & WRITES,
+                    ..State::default()
+                }
             } else {
                 // The transition made the content available, and visible to this use; others wait for its stages.
                 let seen = vec![(need.stages, need.access)];
-                State { layout: need.layout, write_stages: need.stages, seen, read_stages: need.stages, ..State::default() }
+                State {
+                    layout: need.layout,
+                    write_stages: need.stages,
+                    seen,
+                    read_stages: need.stages,
+                    ..State::default()
+                }
             };
             return barrier;
         }
-        let seen = self.seen.iter().any(|(stages, access)| stages.contains(need.stages) && access.contains(need.access));
-        let barrier = (self.write_stages != Stages::NONE && !seen).then(|| dependency(self.write_stages, self.write_access));
+        let seen =
+            self.seen.iter().any(|(stages, access)| stages.contains(need.stages) && access.contains(need.access));
+        let barrier =
+            (self.write_stages != Stages::NONE && !seen).then(|| dependency(self.write_stages, self.write_access));
         if barrier.is_some() {
             self.seen.push((need.stages, need.access));
         }
@@ -94,11 +107,23 @@ mod tests {
     const SAMPLED: ImageLayout = ImageLayout::SHADER_READ_ONLY_OPTIMAL;
 
     fn buffer_read(stages: Stages) -> Need {
-        Need { stages, access: Access::SHADER_STORAGE_READ, layout: ImageLayout::UNDEFINED, writes: false, discards: false }
+        Need {
+            stages,
+            access: Access::SHADER_STORAGE_READ,
+            layout: ImageLayout::UNDEFINED,
+            writes: false,
+            discards: false,
+        }
     }
 
     fn buffer_write(stages: Stages) -> Need {
-        Need { stages, access: Access::SHADER_STORAGE_WRITE, layout: ImageLayout::UNDEFINED, writes: true, discards: true }
+        Need {
+            stages,
+            access: Access::SHADER_STORAGE_WRITE,
+            layout: ImageLayout::UNDEFINED,
+            writes: true,
+            discards: true,
+        }
     }
 
     fn storage_image(stages: Stages, discards: bool) -> Need {

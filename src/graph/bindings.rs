@@ -36,9 +36,9 @@ impl ImageRef {
         ImageRef { mips: (level, level + 1), ..self }
     }
 
-    /// Through a sampler that clamps at the edges and filters linearly; `texelFetch` ignores both.
+    /// For `texelFetch`, or the nearest texel.
     pub(crate) fn sampled(self) -> SampledImage {
-        self.sampled_with(SamplerKind::LinearClamp)
+        self.sampled_with(SamplerKind::NearestClamp)
     }
 
     pub(crate) fn sampled_with(self, sampler: SamplerKind) -> SampledImage {
@@ -134,9 +134,13 @@ pub(crate) enum ImageUse {
     /// Reads or keeps what it does not write.
     StorageModify,
     /// A colour attachment; `keep`: drawn over what it holds.
-    Color { keep: bool },
+    Color {
+        keep: bool,
+    },
     /// A depth or stencil attachment that is written; `keep` as above.
-    Depth { keep: bool },
+    Depth {
+        keep: bool,
+    },
     /// A depth or stencil attachment that is only tested against.
     DepthTest,
     /// Cleared by the transfer engine.

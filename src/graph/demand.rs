@@ -42,7 +42,10 @@ pub(crate) fn decide(passes: &[Needs], wanted: &[Version], stored: impl Fn(Place
         let (runs, taken) = walk(passes, wanted, held);
         // A content taken from memory must not be overwritten by an earlier pass that has to run after all.
         let clobbered = taken.into_iter().find(|(user, version)| {
-            passes[..*user].iter().zip(&runs).any(|(pass, runs)| *runs && pass.writes.iter().any(|write| write.place == version.place))
+            passes[..*user]
+                .iter()
+                .zip(&runs)
+                .any(|(pass, runs)| *runs && pass.writes.iter().any(|write| write.place == version.place))
         });
         match clobbered {
             Some((_, version)) => drop(stale.insert(version.place)),
@@ -94,13 +97,16 @@ mod tests {
     use Verdict::{NotAsked, Run, Unchanged};
 
     fn pass(reads: &[(usize, u64)], writes: &[(usize, u64)]) -> Needs {
-        let versions = |list: &[(usize, u64)]| list.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
+        let versions =
+            |list: &[(usize, u64)]| list.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
         Needs { reads: versions(reads), writes: versions(writes) }
     }
 
     fn run(passes: &[Needs], wanted: &[(usize, u64)], stored: &[(usize, u64)]) -> Vec<Verdict> {
         let wanted: Vec<_> = wanted.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
-        decide(passes, &wanted, |(resource, _)| stored.iter().find(|(place, _)| *place == resource).map(|(_, key)| *key))
+        decide(passes, &wanted, |(resource, _)| {
+            stored.iter().find(|(place, _)| *place == resource).map(|(_, key)| *key)
+        })
     }
 
     #[test]
@@ -115,7 +121,11 @@ mod tests {
         let passes = [pass(&[], &[(0, 10)]), pass(&[(0, 10)], &[(1, 11)]), pass(&[(1, 11)], &[(2, 12)])];
         assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 11), (2, 12)]), [Unchanged; 3]);
         assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 11)]), [Unchanged, Unchanged, Run]);
-        assert_eq!(run(&passes, &[(2, 12)], &[(0, 99), (1, 11)]), [Unchanged, Unchanged, Run], "an intermediate may be gone");
+        assert_eq!(
+            run(&passes, &[(2, 12)], &[(0, 99), (1, 11)]),
+            [Unchanged, Unchanged, Run],
+            "an intermediate may be gone"
+        );
         assert_eq!(run(&passes, &[(2, 12)], &[(0, 10), (1, 99)]), [Unchanged, Run, Run]);
     }
 
@@ -130,8 +140,9 @@ mod tests {
     #[test]
     fn a_content_that_an_earlier_pass_overwrites_is_made_again() {
         // Pass 1 needs the first content of 0, pass 3 the second, which memory holds.
-        let passes = [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(2, 6)])];
+        let passes =
+            [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(2, 6)])];
         assert_eq!(run(&passes, &[(1, 5), (2, 6)], &[(0, 2)]), [Run, Run, Run, Run]);
-assert_eq!(run(&passes, &[(2, 6)], &[(0, 2)]), [Unchanged, NotAsked, Unchanged, Run]);
+        assert_eq!(run(&passes, &[(2, 6)], &[(0, 2)]), [Unchanged, NotAsked, Unchanged, Run]);
     }
 }

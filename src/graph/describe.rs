@@ -28,7 +28,8 @@ impl Graph<'_> {
         let verdicts = self.verdicts();
         let describe = |(pass, verdict): (&Pass, &Verdict)| {
             let names = |versions: &[super::Version]| -> Vec<String> {
-                let names: BTreeSet<&String> = versions.iter().map(|version| &self.resources[version.place.0].name).collect();
+                let names: BTreeSet<&String> =
+                    versions.iter().map(|version| &self.resources[version.place.0].name).collect();
                 names.into_iter().cloned().collect()
             };
             DescribedPass {
@@ -57,7 +58,9 @@ impl GraphDescription {
             writeln!(out, "{}", pass.full_name()).ok();
             match &pass.skipped {
                 Some(reason) => writeln!(out, "    skipped: {reason}").ok(),
-                None => writeln!(out, "    reads  {}\n    writes {}", pass.reads.join(", "), pass.writes.join(", ")).ok(),
+                None => {
+                    writeln!(out, "    reads  {}\n    writes {}", pass.reads.join(", "), pass.writes.join(", ")).ok()
+                }
             };
         }
         out
@@ -77,13 +80,23 @@ impl GraphDescription {
             for pass in passes {
                 let name = pass.full_name();
                 match &pass.skipped {
-                    Some(reason) => writeln!(out, "    {} [shape=box, style=dashed, label={}];", quoted(&name), quoted(&format!("{}\n{reason}", pass.name)).replace('\n', "\\n")).ok(),
-                    None => writeln!(out, "    {} [shape=box, style=bold, label={}];", quoted(&name), quoted(&pass.name)).ok(),
+                    Some(reason) => writeln!(
+                        out,
+                        "    {} [shape=box, style=dashed, label={}];",
+                        quoted(&name),
+                        quoted(&format!("{}\n{reason}", pass.name)).replace('\n', "\\n")
+                    )
+                    .ok(),
+                    None => {
+                        writeln!(out, "    {} [shape=box, style=bold, label={}];", quoted(&name), quoted(&pass.name))
+                            .ok()
+                    }
                 };
             }
             out.push_str("  }\n");
         }
-        let resources: BTreeSet<&String> = self.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)).collect();
+        let resources: BTreeSet<&String> =
+            self.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)).collect();
         for resource in resources {
             writeln!(out, "  {} [shape=ellipse];", quoted(resource)).ok();
         }

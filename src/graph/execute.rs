@@ -14,8 +14,8 @@ use super::{Body, Graph};
 use crate::renderer::{PassTiming, Timing};
 use crate::vulkan::program::{BindingKind, ImageDim};
 use crate::vulkan::{
-    Attachment, Attachments, Barriers, Buffer, Descriptor, Image, ImageBarrier, Location, Pipeline, SamplerKind, Scope, SubresourceView, TargetFormats,
-    VulkanError, pipeline_stages, texel_bytes,
+    Attachment, Attachments, Barriers, Buffer, Descriptor, Image, ImageBarrier, Location, Pipeline, Scope,
+    SubresourceView, TargetFormats, VulkanError, pipeline_stages, texel_bytes,
 };
 
 /// The number of a read-back in [`Executed::read_back`].
@@ -54,7 +54,9 @@ impl Graph<'_> {
             let resource = &self.resources[resource];
             match &resource.body {
                 // The host writes them before the frame; the scene's stand anyway.
-                Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => Some(resource.content[mip as usize].0),
+                Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => {
+                    Some(resource.content[mip as usize].0)
+                }
                 Body::Image(info) if self.store.fits(resource) => self.store.image_key(&resource.name, info, mip),
                 Body::Buffer { bytes } if self.store.fits(resource) => self.store.buffer_key(&resource.name, *bytes),
                 Body::Image(_) | Body::Buffer { .. } => None,
@@ -81,7 +83,11 @@ impl Graph<'_> {
         self.provide_memory(verdicts)?;
         let running = verdicts.iter().filter(|verdict| **verdict == Verdict::Run).count();
         if running as u64 > u64::from(MAX_PASSES) {
-            return Err(VulkanError::TooLarge { what: "the frame".to_owned(), asked: format!("{running} passes"), limit: MAX_PASSES.to_string() });
+            return Err(VulkanError::TooLarge {
+                what: "the frame".to_owned(),
+                asked: format!("{running} passes"),
+                limit: MAX_PASSES.to_string(),
+            });
         }
         let read_back = self.provide_read_back()?;
         self.store.queries.reset();
@@ -161,7 +167,13 @@ impl Graph<'_> {
         }
     }
 
-    fn record_pass(&mut self, index: usize, slot: u32, timing: Timing, counters: &mut Vec<PendingCounter>) -> Result<(), VulkanError> {
+    fn record_pass(
+        &mut self,
+        index: usize,
+        slot: u32,
+        timing: Timing,
+        counters: &mut Vec<PendingCounter>,
+    ) -> Result<(), VulkanError> {
         let images = self.images_of(index);
         let barriers = self.barriers_before(index, &images);
         let recorder = &self.store.recorder;
@@ -247,9 +259,20 @@ impl Graph<'_> {
                 Body::Image(_) => {
                     let stored = self.store.images.get_mut(&body.name).expect("provided before recording");
                     let Some(found) = stored.states[mips as usize].transition(need) else { continue };
-                    let scope = Scope { from_stages: found.from_stages, from_access: found.from_access, to_stages: found.to_stages, to_access: found.to_access };
+                    let scope = Scope {
+                        from_stages: found.from_stages,
+                        from_access: found.from_access,
+                        to_stages: found.to_stages,
+                        to_access: found.to_access,
+                    };
                     let (old_layout, new_layout) = (found.old_layout, found.new_layout);
-                    barriers.images.push(ImageBarrier { image: &images[&resource], mip: mips, scope, old_layout, new_layout });
+                    barriers.images.push(ImageBarrier {
+                        image: &images[&resource],
+                        mip: mips,
+                        scope,
+                        old_layout,
+                        new_layout,
+                    });
                 }
             }
         }
@@ -265,7 +288,9 @@ impl Graph<'_> {
                     recorder.clear_image(&self.memory_of_image(*image), mip, vk::ClearColorValue { float32: *value });
                 }
             }
-            Work::FillBuffer { buffer, word } => recorder.fill(&self.memory_of_buffer(*buffer), 0, vk::WHOLE_SIZE, *word),
+            Work::FillBuffer { buffer, word } => {
+                recorder.fill(&self.memory_of_buffer(*buffer), 0, vk::WHOLE_SIZE, *word)
+            }
             Work::Dispatch(groups) => {
                 self.check_groups(pass, *groups)?;
                 if !groups.contains(&0) {
@@ -285,7 +310,11 @@ impl Graph<'_> {
     fn check_groups(&self, pass: &Pass, groups: [u32; 3]) -> Result<(), VulkanError> {
         let limits = self.store.device.limits().max_compute_work_group_count;
         if groups.iter().zip(limits).any(|(groups, limit)| *groups > limit) {
-            return Err(VulkanError::TooLarge { what: format!("the dispatch of {}", pass.full_name()), asked: format!("{groups:?} groups"), limit: format!("{limits:?}") });
+            return Err(VulkanError::TooLarge {
+                what: format!("the dispatch of {}", pass.full_name()),
+                asked: format!("{groups:?} groups"),
+                limit: format!("{limits:?}"),
+            });
         }
         Ok(())
     }
@@ -301,7 +330,11 @@ impl Graph<'_> {
         recorder.bind_pipeline(pipeline);
         let mut descriptors = Vec::new();
         for (number, access) in &pass.bindings {
-            let binding = program.bindings.iter().find(|binding| (binding.set, binding.binding) == (0, *number)).expect("generated from the same SPIR-V");
+            let binding = program
+                .bindings
+                .iter()
+                .find(|binding| (binding.set, binding.binding) == (0, *number))
+                .expect("generated from the same SPIR-V");
             descriptors.push((*number, binding.kind, self.descriptor(access, binding.kind)?));
         }
         if !descriptors.is_empty() {
@@ -316,20 +349,24 @@ impl Graph<'_> {
         Ok(match access {
             Access::Image { image, mips, usage } => {
                 let image = self.memory_of_image(*image);
-                let (BindingKind::SampledImage(dim) | BindingKind::StorageImage(dim)) = kind else { unreachable!("typed by the generated bindings") };
+                let (BindingKind::SampledImage(dim) | BindingKind::StorageImage(dim)) = kind else {
+                    unreachable!("typed by the generated bindings")
+                };
                 let aspect = image.info.aspect() & !vk::ImageAspectFlags::STENCIL;
                 let aspect = if aspect.is_empty() { image.info.aspect() } else { aspect };
-                let view = image.view(&SubresourceView { dim, mips: mips.clone(), aspect, format: image.info.format })?;
+                let view =
+                    image.view(&SubresourceView { dim, mips: mips.clone(), aspect, format: image.info.format })?;
                 match usage {
                     ImageUse::Sampled(sampler) => {
-                        // Integer formats and 32-bit floats need not be filterable; such images are fetched, not filtered.
-                        let sampler = if filterable(image.info.format) { *sampler } else { SamplerKind::NearestClamp };
-                        Descriptor::Image { view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, sampler: self.store.pipelines.sampler(sampler)? }
+                        let sampler = self.store.pipelines.sampler(*sampler)?;
+                        Descriptor::Image { view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, sampler }
                     }
                     _ => Descriptor::Image { view, layout: vk::ImageLayout::GENERAL, sampler: vk::Sampler::null() },
                 }
             }
-            Access::Buffer { buffer, usage: BufferUse::Texels(format) } => Descriptor::Texels(self.memory_of_buffer(*buffer).texels(*format)?),
+            Access::Buffer { buffer, usage: BufferUse::Texels(format) } => {
+                Descriptor::Texels(self.memory_of_buffer(*buffer).texels(*format)?)
+            }
             Access::Buffer { buffer, .. } => Descriptor::Buffer(self.memory_of_buffer(*buffer).raw),
         })
     }
@@ -344,7 +381,9 @@ impl Graph<'_> {
         recorder.viewport([0.0, 0.0, width as f32, height as f32], [0, 0, width, height]);
         match draws {
             Draws::Vertices { vertices, instances } => recorder.draw(*vertices, *instances),
-            Draws::Indirect { buffer, offset, count } => recorder.draw_indirect(&self.memory_of_buffer(*buffer), *offset, *count),
+            Draws::Indirect { buffer, offset, count } => {
+                recorder.draw_indirect(&self.memory_of_buffer(*buffer), *offset, *count)
+            }
             Draws::Meshes(list) => self.record_meshes(pipeline, list),
         }
         recorder.end_rendering();
@@ -372,10 +411,17 @@ impl Graph<'_> {
     }
 
     fn attachments(&self, targets: &Targets) -> Result<Attachments, VulkanError> {
-        let view = |access: &Access, aspect: vk::ImageAspectFlags| -> Result<(vk::ImageView, vk::Format, vk::ImageLayout), VulkanError> {
+        let view = |access: &Access,
+                    aspect: vk::ImageAspectFlags|
+         -> Result<(vk::ImageView, vk::Format, vk::ImageLayout), VulkanError> {
             let Access::Image { image, mips, usage } = access else { unreachable!("attachments are images") };
             let image = self.memory_of_image(*image);
-            let what = SubresourceView { dim: ImageDim::D2, mips: mips.start..mips.start + 1, aspect, format: image.info.format };
+            let what = SubresourceView {
+                dim: ImageDim::D2,
+                mips: mips.start..mips.start + 1,
+                aspect,
+                format: image.info.format,
+            };
             Ok((image.view(&what)?, image.info.format, layout_of(*usage)))
         };
         let mut made = Attachments { extent: targets.extent, ..Attachments::default() };
@@ -397,13 +443,15 @@ impl Graph<'_> {
         }
         if let Some((access, clear)) = &targets.depth {
             let (view, format, layout) = view(access, vk::ImageAspectFlags::DEPTH)?;
-            let clear = clear.map(|depth| vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth, stencil: 0 } });
+            let clear =
+                clear.map(|depth| vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth, stencil: 0 } });
             made.depth = Some(Attachment { view, layout, clear, store: layout != READ_ONLY_DEPTH });
             made.formats.depth = format;
         }
         if let Some((access, clear)) = &targets.stencil {
             let (view, format, layout) = view(access, vk::ImageAspectFlags::STENCIL)?;
-            let clear = clear.map(|stencil| vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil } });
+            let clear = clear
+                .map(|stencil| vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil } });
             made.stencil = Some(Attachment { view, layout, clear, store: layout != READ_ONLY_DEPTH });
             made.formats.stencil = format;
         }
@@ -414,7 +462,9 @@ impl Graph<'_> {
     fn record_counters(&self, index: usize, counters: &mut Vec<PendingCounter>) {
         let pass = &self.passes[index];
         let recorder = &self.store.recorder;
-        let mut slot = counters.last().map_or(0, |last: &PendingCounter| last.slot + if last.invocations_of_group.is_some() { 3 } else { 1 });
+        let mut slot = counters
+            .last()
+            .map_or(0, |last: &PendingCounter| last.slot + if last.invocations_of_group.is_some() { 3 } else { 1 });
         let mut add = |name: &str, buffer: usize, offset: u64, invocations_of_group: Option<u64>| {
             let words = if invocations_of_group.is_some() { 3 } else { 1 };
             if slot + words <= MAX_COUNTERS {
@@ -424,7 +474,8 @@ impl Graph<'_> {
             }
         };
         if let Work::DispatchIndirect { buffer, offset } = pass.work {
-            let local: u64 = pass.program.map_or(1, |program| program.local_size.iter().map(|&length| u64::from(length)).product());
+            let local: u64 =
+                pass.program.map_or(1, |program| program.local_size.iter().map(|&length| u64::from(length)).product());
             add("invocations", buffer, offset, Some(local));
         }
         for counter in &pass.counters {
@@ -451,12 +502,19 @@ impl Graph<'_> {
         }
     }
 
-    fn report(&self, verdicts: &[Verdict], order: &[usize], timing: Timing, counters: &[PendingCounter]) -> Result<Vec<PassTiming>, VulkanError> {
+    fn report(
+        &self,
+        verdicts: &[Verdict],
+        order: &[usize],
+        timing: Timing,
+        counters: &[PendingCounter],
+    ) -> Result<Vec<PassTiming>, VulkanError> {
         let stamps = match timing {
             Timing::Passes => self.store.queries.read_timestamps(2 + 2 * u32::try_from(order.len()).unwrap_or(0))?,
             Timing::Frame => Vec::new(),
         };
-        let words: &[u32] = self.store.counters.mapped().and_then(|bytes| bytemuck::try_cast_slice(bytes).ok()).unwrap_or(&[]);
+        let words: &[u32] =
+            self.store.counters.mapped().and_then(|bytes| bytemuck::try_cast_slice(bytes).ok()).unwrap_or(&[]);
         let mut slots: HashMap<usize, usize> = HashMap::new();
         slots.extend(order.iter().enumerate().map(|(slot, &index)| (index, slot)));
         let mut rows = Vec::new();
@@ -472,7 +530,8 @@ impl Graph<'_> {
                     let product = |lengths: [u32; 3]| lengths.iter().map(|&length| u64::from(length)).product::<u64>();
                     work.insert("invocations".to_owned(), product(*groups) * product(program.local_size));
                 }
-                if pass.raster.is_some() && timing == Timing::Passes
+                if pass.raster.is_some()
+                    && timing == Timing::Passes
                     && let Some(statistics) = self.store.queries.read_statistics(u32::try_from(slot).unwrap_or(0))
                 {
                     work.insert("vertices".to_owned(), statistics.vertices);
@@ -481,11 +540,23 @@ impl Graph<'_> {
                 }
             }
             for counter in counters.iter().filter(|counter| counter.pass == index) {
-                let word = |offset: u64| usize::try_from(counter.slot + offset).ok().and_then(|slot| words.get(slot)).map_or(0, |&word| u64::from(word));
-                let value = counter.invocations_of_group.map_or_else(|| word(0), |local| word(0) * word(1) * word(2) * local);
+                let word = |offset: u64| {
+                    usize::try_from(counter.slot + offset)
+                        .ok()
+                        .and_then(|slot| words.get(slot))
+                        .map_or(0, |&word| u64::from(word))
+                };
+                let value =
+                    counter.invocations_of_group.map_or_else(|| word(0), |local| word(0) * word(1) * word(2) * local);
                 work.insert(counter.name.clone(), value);
             }
-            rows.push(PassTiming { piece: pass.piece.clone(), pass: pass.name.clone(), ms, skipped: pass.skip_reason(*verdict), work });
+            rows.push(PassTiming {
+                piece: pass.piece.clone(),
+                pass: pass.name.clone(),
+                ms,
+                skipped: pass.skip_reason(*verdict),
+                work,
+            });
         }
         Ok(rows)
     }
@@ -496,7 +567,11 @@ impl Graph<'_> {
         let mut end = 0_u64;
         for &id in &self.read_backs {
             let size = match &self.resources[id].body {
-                Body::Image(info) => info.extent.iter().map(|&length| u64::from(length)).product::<u64>() * u64::from(info.layers) * texel_bytes(info.format),
+                Body::Image(info) => {
+                    info.extent.iter().map(|&length| u64::from(length)).product::<u64>()
+                        * u64::from(info.layers)
+                        * texel_bytes(info.format)
+                }
                 Body::Buffer { bytes } => bytes.next_multiple_of(4).max(4),
                 _ => 0,
             };
@@ -506,7 +581,13 @@ impl Graph<'_> {
         let held = self.store.read_back.as_ref().map_or(0, |buffer| buffer.size);
         if end > held {
             self.store.read_back = None;
-            self.store.read_back = Some(Buffer::new(&self.store.device, "read-back", end, vk::BufferUsageFlags::TRANSFER_DST, Location::ReadBack)?);
+            self.store.read_back = Some(Buffer::new(
+                &self.store.device,
+                "read-back",
+                end,
+                vk::BufferUsageFlags::TRANSFER_DST,
+                Location::ReadBack,
+            )?);
         }
         Ok(places)
     }
@@ -526,7 +607,13 @@ impl Graph<'_> {
             if let Some(stored) = self.store.images.get_mut(&name) {
                 let found = stored.states[0].transition(Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read });
                 let image = stored.image.clone();
-                let barriers = found.map(|found| ImageBarrier { image: &image, mip: 0, scope: Scope::FULL, old_layout: found.old_layout, new_layout: found.new_layout });
+                let barriers = found.map(|found| ImageBarrier {
+                    image: &image,
+                    mip: 0,
+                    scope: Scope::FULL,
+                    old_layout: found.old_layout,
+                    new_layout: found.new_layout,
+                });
                 self.store.recorder.barriers(&Barriers { memory: None, images: barriers.into_iter().collect() });
                 self.store.recorder.read_image(&image, target, offset);
             } else if let Some(stored) = self.store.buffers.get_mut(&name) {
@@ -547,8 +634,12 @@ impl Graph<'_> {
 
     fn copy_read_backs(&self, places: &[(u64, u64)]) -> Vec<Vec<u8>> {
         let mapped = self.store.read_back.as_ref().and_then(Buffer::mapped).unwrap_or(&[]);
-        let range = |(offset, size): (u64, u64)| Some(usize::try_from(offset).ok()?..usize::try_from(offset + size).ok()?);
-        places.iter().map(|&place| range(place).and_then(|range| mapped.get(range)).map(<[u8]>::to_vec).unwrap_or_default()).collect()
+        let range =
+            |(offset, size): (u64, u64)| Some(usize::try_from(offset).ok()?..usize::try_from(offset + size).ok()?);
+        places
+            .iter()
+            .map(|&place| range(place).and_then(|range| mapped.get(range)).map(<[u8]>::to_vec).unwrap_or_default())
+            .collect()
     }
 }
 
@@ -616,8 +707,12 @@ fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2) -> Need {
         ImageUse::StorageRead => (shaders, A::SHADER_STORAGE_READ, false, false),
         ImageUse::StorageWrite => (shaders, A::SHADER_STORAGE_WRITE, true, true),
         ImageUse::StorageModify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true, false),
-        ImageUse::Color { keep } => (S::COLOR_ATTACHMENT_OUTPUT, A::COLOR_ATTACHMENT_READ | A::COLOR_ATTACHMENT_WRITE, true, !keep),
-        ImageUse::Depth { keep } => (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE, true, !keep),
+        ImageUse::Color { keep } => {
+            (S::COLOR_ATTACHMENT_OUTPUT, A::COLOR_ATTACHMENT_READ | A::COLOR_ATTACHMENT_WRITE, true, !keep)
+        }
+        ImageUse::Depth { keep } => {
+            (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE, true, !keep)
+        }
         ImageUse::DepthTest => (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ, false, false),
         ImageUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true, true),
     };
@@ -637,11 +732,4 @@ fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {
         BufferUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true),
     };
     Need { stages, access, layout: vk::ImageLayout::UNDEFINED, writes, discards: false }
-}
-
-fn filterable(format: vk::Format) -> bool {
-    !matches!(
-        format,
-        vk::Format::R32_UINT | vk::Format::R32G32_UINT | vk::Format::R32G32B32A32_UINT | vk::Format::R32G32B32A32_SFLOAT | vk::Format::R8_UINT
-    )
 }

@@ -32,7 +32,7 @@ use crate::vulkan::{Buffer, Image, ImageInfo, RasterState};
 use bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
 use demand::Version;
 pub use describe::GraphDescription;
-pub(crate) use execute::{Executed, ReadBack};
+pub(crate) use execute::ReadBack;
 pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList, PassBuilder};
 use pass::{Pass, Work};
 pub(crate) use store::Store;
@@ -50,7 +50,8 @@ impl Dependence {
     const NAMES: [&'static str; 4] = ["geometry", "materials", "lights", "camera"];
 
     fn reason(self) -> String {
-        let names: Vec<_> = (0..).zip(Dependence::NAMES).filter(|(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name).collect();
+        let names: Vec<_> =
+            (0..).zip(Dependence::NAMES).filter(|(bit, _)| self.0 >> bit & 1 == 1).map(|(_, name)| name).collect();
         if names.is_empty() { "unchanged".to_owned() } else { format!("unchanged: {}", names.join(", ")) }
     }
 }
@@ -65,7 +66,9 @@ impl std::ops::BitOr for Dependence {
 
 enum Body {
     Image(ImageInfo),
-    Buffer { bytes: u64 },
+    Buffer {
+        bytes: u64,
+    },
     /// Written by the host before the frame.
     Upload(Vec<u8>),
     /// Owned by the scene: only read, and in its final layout.
@@ -108,7 +111,10 @@ impl<'s> Graph<'s> {
 
     /// An image of the frame. What it held in the last frame stands until a pass writes it.
     pub(crate) fn image(&mut self, name: &str, format: vk::Format, extent: [u32; 2]) -> ImageRef {
-        self.image_with(name, ImageInfo { format, extent: [extent[0], extent[1], 1], mips: 1, layers: 1, volume: false })
+        self.image_with(
+            name,
+            ImageInfo { format, extent: [extent[0], extent[1], 1], mips: 1, layers: 1, volume: false },
+        )
     }
 
     /// An image of any shape.
@@ -135,15 +141,30 @@ impl<'s> Graph<'s> {
     }
 
     /// A buffer of the scene, whose content `key` names.
-    pub(crate) fn import_buffer<T>(&mut self, name: &str, buffer: &Arc<Buffer>, key: u64, dependence: Dependence) -> BufferRef<T> {
+    pub(crate) fn import_buffer<T>(
+        &mut self,
+        name: &str,
+        buffer: &Arc<Buffer>,
+        key: u64,
+        dependence: Dependence,
+    ) -> BufferRef<T> {
         let count = usize::try_from(buffer.size).unwrap_or(0) / size_of::<T>().max(1);
         let id = self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence));
         BufferRef { id, count, element: PhantomData }
     }
 
     /// An image of the scene, in the layout for sampling, whose content `key` names.
-    #[allow(dead_code, reason = "textures are bound per material so far; compute passes that sample them bind them here")]
-    pub(crate) fn import_image(&mut self, name: &str, image: &Arc<Image>, key: u64, dependence: Dependence) -> ImageRef {
+    #[allow(
+        dead_code,
+        reason = "textures are bound per material so far; compute passes that sample them bind them here"
+    )]
+    pub(crate) fn import_image(
+        &mut self,
+        name: &str,
+        image: &Arc<Image>,
+        key: u64,
+        dependence: Dependence,
+    ) -> ImageRef {
         let info = image.info;
         let id = self.add(name, Body::ExternalImage(image.clone()), info.mips, |_| (key, dependence));
         ImageRef { id, mips: (0, info.mips), info }
@@ -183,7 +204,9 @@ impl<'s> Graph<'s> {
     /// Asks that the image be made.
     pub(crate) fn want(&mut self, image: ImageRef) {
         let content = &self.resources[image.id].content;
-        self.wanted.extend((image.mips.0..image.mips.1).map(|mip| Version { place: (image.id, mip), key: content[mip as usize].0 }));
+        self.wanted.extend(
+            (image.mips.0..image.mips.1).map(|mip| Version { place: (image.id, mip), key: content[mip as usize].0 }),
+        );
     }
 
     /// Asks that the buffer be made.
@@ -245,7 +268,9 @@ impl<'s> Graph<'s> {
                 let resource = &mut self.resources[*image];
                 resource.image_usage |= match usage {
                     ImageUse::Sampled(_) => vk::ImageUsageFlags::SAMPLED,
-                    ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => vk::ImageUsageFlags::STORAGE,
+                    ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => {
+                        vk::ImageUsageFlags::STORAGE
+                    }
                     ImageUse::Color { .. } => vk::ImageUsageFlags::COLOR_ATTACHMENT,
                     ImageUse::Depth { .. } | ImageUse::DepthTest => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
                     ImageUse::Clear => vk::ImageUsageFlags::TRANSFER_DST,

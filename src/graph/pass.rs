@@ -48,9 +48,16 @@ pub(crate) struct DrawList {
 pub(super) enum Draws {
     Meshes(Box<DrawList>),
     #[allow(dead_code, reason = "full-screen and point passes of the methods to come")]
-    Vertices { vertices: u32, instances: u32 },
+    Vertices {
+        vertices: u32,
+        instances: u32,
+    },
     #[allow(dead_code, reason = "photon batches of the methods to come")]
-    Indirect { buffer: usize, offset: u64, count: u32 },
+    Indirect {
+        buffer: usize,
+        offset: u64,
+        count: u32,
+    },
 }
 
 pub(super) enum Work {
@@ -164,7 +171,12 @@ pub(crate) struct PassBuilder<'g, 's> {
 }
 
 impl<'g, 's> PassBuilder<'g, 's> {
-    pub(super) fn new<B: BindingSet>(graph: &'g mut Graph<'s>, name: &str, bindings: &B, raster: Option<RasterState>) -> PassBuilder<'g, 's> {
+    pub(super) fn new<B: BindingSet>(
+        graph: &'g mut Graph<'s>,
+        name: &str,
+        bindings: &B,
+        raster: Option<RasterState>,
+    ) -> PassBuilder<'g, 's> {
         debug_assert_eq!(B::SET, 0, "materials are bound by draws");
         let mut pass = Pass::new(name, Work::Dispatch([0; 3]));
         pass.program = Some(B::PROGRAM);
@@ -225,8 +237,14 @@ impl<'g, 's> PassBuilder<'g, 's> {
     /// The stencil attachment; `clear` as for colours. Without clearing and without writes it is only tested.
     #[allow(dead_code, reason = "multi-resolution layers of the methods to come")]
     pub(crate) fn stencil(mut self, image: ImageRef, clear: Option<u32>) -> Self {
-        let tests = self.pass.raster.as_ref().and_then(|(state, _)| state.stencil).is_some_and(|stencil| stencil.pass == vk::StencilOp::KEEP);
-        let usage = if clear.is_none() && tests { ImageUse::DepthTest } else { ImageUse::Depth { keep: clear.is_none() } };
+        let tests = self
+            .pass
+            .raster
+            .as_ref()
+            .and_then(|(state, _)| state.stencil)
+            .is_some_and(|stencil| stencil.pass == vk::StencilOp::KEEP);
+        let usage =
+            if clear.is_none() && tests { ImageUse::DepthTest } else { ImageUse::Depth { keep: clear.is_none() } };
         let access = image.access(usage);
         self.pass.others.push(access.clone());
         self.targets().extent = [image.info.extent[0], image.info.extent[1]];

@@ -50,7 +50,9 @@ pub(super) const MAX_COUNTERS: u64 = 1024;
 
 impl Store {
     pub(crate) fn new(device: &Arc<Device>) -> Result<Store, VulkanError> {
-        let host_visible = |name: &str, bytes| Buffer::new(device, name, bytes, vk::BufferUsageFlags::TRANSFER_DST, Location::ReadBack);
+        let host_visible = |name: &str, bytes| {
+            Buffer::new(device, name, bytes, vk::BufferUsageFlags::TRANSFER_DST, Location::ReadBack)
+        };
         Ok(Store {
             device: device.clone(),
             pipelines: Pipelines::new(device),
@@ -96,15 +98,16 @@ impl Store {
     /// Whether the memory behind `resource` can serve this frame's uses.
     pub(super) fn fits(&self, resource: &Resource) -> bool {
         match &resource.body {
-            Body::Image(info) => self.images.get(&resource.name).is_some_and(|stored| stored.image.info == *info && stored.usage.contains(resource.image_usage)),
-            Body::Buffer { bytes } => self
-                .buffers
+            Body::Image(info) => self
+                .images
                 .get(&resource.name)
-                .is_some_and(|stored| !stored.upload && stored.bytes == *bytes && stored.usage.contains(resource.buffer_usage)),
-            Body::Upload(data) => self
-                .buffers
-                .get(&resource.name)
-                .is_some_and(|stored| stored.upload && stored.bytes == data.len() as u64 && stored.usage.contains(resource.buffer_usage)),
+                .is_some_and(|stored| stored.image.info == *info && stored.usage.contains(resource.image_usage)),
+            Body::Buffer { bytes } => self.buffers.get(&resource.name).is_some_and(|stored| {
+                !stored.upload && stored.bytes == *bytes && stored.usage.contains(resource.buffer_usage)
+            }),
+            Body::Upload(data) => self.buffers.get(&resource.name).is_some_and(|stored| {
+                stored.upload && stored.bytes == data.len() as u64 && stored.usage.contains(resource.buffer_usage)
+            }),
             Body::ExternalBuffer(_) | Body::ExternalImage(_) => true,
         }
     }
@@ -123,17 +126,34 @@ impl Store {
                 let usage = resource.image_usage | old;
                 let image = Image::new(&self.device, name, *info, usage, vk::ImageCreateFlags::empty())?;
                 let mips = info.mips as usize;
-                let stored = StoredImage { image: Arc::new(image), usage, states: vec![State::default(); mips], keys: vec![None; mips], piece };
+                let stored = StoredImage {
+                    image: Arc::new(image),
+                    usage,
+                    states: vec![State::default(); mips],
+                    keys: vec![None; mips],
+                    piece,
+                };
                 self.images.insert(name.clone(), stored);
             }
-            Body::Buffer { bytes } => self.provide_buffer(name, *bytes, resource.buffer_usage, Location::Device, piece)?,
-            Body::Upload(data) => self.provide_buffer(name, data.len() as u64, resource.buffer_usage, Location::Upload, piece)?,
+            Body::Buffer { bytes } => {
+                self.provide_buffer(name, *bytes, resource.buffer_usage, Location::Device, piece)?
+            }
+            Body::Upload(data) => {
+                self.provide_buffer(name, data.len() as u64, resource.buffer_usage, Location::Upload, piece)?
+            }
             Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}
         }
         Ok(())
     }
 
-    fn provide_buffer(&mut self, name: &str, bytes: u64, usage: vk::BufferUsageFlags, location: Location, piece: String) -> Result<(), VulkanError> {
+    fn provide_buffer(
+        &mut self,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: Location,
+        piece: String,
+    ) -> Result<(), VulkanError> {
         let old = self.buffers.remove(name).map_or(vk::BufferUsageFlags::empty(), |stored| stored.usage);
         let usage = usage | old;
         let limit = u64::from(self.device.limits().max_storage_buffer_range);
@@ -143,7 +163,10 @@ impl Store {
         }
         let buffer = Arc::new(Buffer::new(&self.device, name, bytes, usage, location)?);
         let upload = location == Location::Upload;
-        self.buffers.insert(name.to_owned(), StoredBuffer { buffer, usage, bytes, upload, state: State::default(), key: None, piece });
+        self.buffers.insert(
+            name.to_owned(),
+            StoredBuffer { buffer, usage, bytes, upload, state: State::default(), key: None, piece },
+        );
         Ok(())
     }
 

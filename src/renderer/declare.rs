@@ -39,17 +39,30 @@ impl Declared {
 }
 
 /// Declares the frame.
-pub(crate) fn declare(graph: &mut Graph<'_>, scene: &Scene, data: &SceneData, set: &LightSet, settings: &Settings, request: &FrameRequest) -> Declared {
+pub(crate) fn declare(
+    graph: &mut Graph<'_>,
+    scene: &Scene,
+    data: &SceneData,
+    set: &LightSet,
+    settings: &Settings,
+    request: &FrameRequest,
+) -> Declared {
     let facts = scene.facts();
     let image_wanted = request.image || request.tonemap.is_some();
     let wants = |slot: Slot| image_wanted || request.slots.contains(&slot);
     let shows_emission = facts.emissive || scene.materials().iter().any(|material| material.unlit);
     let emission = wants(Slot::Emission) && (shows_emission || (facts.sky && request.slots.contains(&Slot::Emission)));
     let geometry = Geometry::import(graph, data);
-    let view = View { camera: camera(&request.camera, request.size, data.origin), size: request.size, sky: scene.sky(), emission };
+    let view = View {
+        camera: camera(&request.camera, request.size, data.origin),
+        size: request.size,
+        sky: scene.sky(),
+        emission,
+    };
     let gbuffer = gbuffer(graph, data, &geometry, &facts, &view);
 
-    let mut declared = Declared { gbuffer, lights: None, reflective: None, rsm: None, direct: None, image: None, display: None };
+    let mut declared =
+        Declared { gbuffer, lights: None, reflective: None, rsm: None, direct: None, image: None, display: None };
     declare_light(graph, &mut declared, &Frame { data, geometry: &geometry, set, settings, facts: &facts }, wants);
 
     if image_wanted {
@@ -74,7 +87,9 @@ fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'
     let indirect = settings.methods.diffuse == DiffuseMethod::Rsm && wants(Slot::Diffuse);
     let reason = if frame.set.lights.is_empty() { Some("no light") } else { None };
     if let Some(reason) = reason {
-        for (used, piece) in [(direct || indirect, "light-views"), (direct, "direct/shadow-map"), (indirect, "diffuse/rsm")] {
+        for (used, piece) in
+            [(direct || indirect, "light-views"), (direct, "direct/shadow-map"), (indirect, "diffuse/rsm")]
+        {
             if used {
                 graph.skip(piece, reason);
             }

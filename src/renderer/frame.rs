@@ -54,7 +54,15 @@ pub struct FrameRequest {
 impl FrameRequest {
     /// The image, read back, timed as a frame.
     pub fn new(size: [u32; 2], camera: CameraView) -> FrameRequest {
-        FrameRequest { size, camera, slots: Vec::new(), image: true, tonemap: None, timing: Timing::Frame, read_back: true }
+        FrameRequest {
+            size,
+            camera,
+            slots: Vec::new(),
+            image: true,
+            tonemap: None,
+            timing: Timing::Frame,
+            read_back: true,
+        }
     }
 }
 

@@ -31,8 +31,8 @@ pub use error::Error;
 pub use frame::{ColorImage, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
 pub use render::Renderer;
 pub use settings::{
-    CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, Preset, RsmSettings, Settings, SettingsError, ShadowSettings, SpecularMethod,
-    Technique,
+    CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, Preset, RsmSettings, Settings, SettingsError,
+    ShadowSettings, SpecularMethod, Technique,
 };
 pub use slots::Slot;
 

@@ -76,15 +76,19 @@ impl Renderer {
 
         let mut executed = graph.run(request.timing)?;
         let size = request.size;
-        let mut frame = Frame { size, image: None, slots: BTreeMap::new(), display: None, timings: FrameTimings::default() };
+        let mut frame =
+            Frame { size, image: None, slots: BTreeMap::new(), display: None, timings: FrameTimings::default() };
         frame.image = image.map(|read_back| color_image(size, &executed.take(read_back)));
         if request.read_back {
             for (slot, read_back) in slots {
-                let image = read_back.map_or_else(|| black(size), |read_back| color_image(size, &executed.take(read_back)));
+                let image =
+                    read_back.map_or_else(|| black(size), |read_back| color_image(size, &executed.take(read_back)));
                 frame.slots.insert(slot, image);
             }
         }
-        frame.display = display.map(|read_back| executed.take(read_back).chunks_exact(4).map(|word| [word[0], word[1], word[2]]).collect());
+        frame.display = display.map(|read_back| {
+            executed.take(read_back).chunks_exact(4).map(|word| [word[0], word[1], word[2]]).collect()
+        });
         let mut memory_bytes = self.store.memory_by_piece();
         memory_bytes.insert("scene".to_owned(), data.bytes());
         frame.timings = FrameTimings {
@@ -107,7 +111,9 @@ impl Renderer {
         let data = self.data.as_ref().expect("prepared above");
         let mut graph = Graph::new(&mut self.store);
         let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
-        for image in Slot::ALL.into_iter().filter(|slot| request.slots.contains(slot)).filter_map(|slot| declared.slot(slot)) {
+        for image in
+            Slot::ALL.into_iter().filter(|slot| request.slots.contains(slot)).filter_map(|slot| declared.slot(slot))
+        {
             graph.want(image);
         }
         if let Some(image) = declared.image.filter(|_| request.image) {
@@ -127,7 +133,13 @@ impl Renderer {
         }
         let device = self.store.device().clone();
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
-        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, device.limits().max_image_dimension2_d);
+        self.lights = LightSet::update(
+            std::mem::take(&mut self.lights),
+            scene,
+            &data,
+            &self.settings,
+            device.limits().max_image_dimension2_d,
+        );
         self.data = Some(data);
         Ok(())
     }
@@ -142,7 +154,8 @@ impl std::fmt::Debug for Renderer {
 /// From four floats a pixel.
 fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {
     let float = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    let pixels = bytes.chunks_exact(16).map(|texel| [float(&texel[0..4]), float(&texel[4..8]), float(&texel[8..12])]).collect();
+    let pixels =
+        bytes.chunks_exact(16).map(|texel| [float(&texel[0..4]), float(&texel[4..8]), float(&texel[8..12])]).collect();
     ColorImage { size, pixels }
 }
 

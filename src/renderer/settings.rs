@@ -79,7 +79,12 @@ impl Technique {
 
     /// The methods that make up the technique.
     pub fn methods(self) -> Methods {
-        let none = Methods { direct: DirectMethod::ShadowMap, diffuse: DiffuseMethod::None, caustics: CausticsMethod::None, specular: SpecularMethod::None };
+        let none = Methods {
+            direct: DirectMethod::ShadowMap,
+            diffuse: DiffuseMethod::None,
+            caustics: CausticsMethod::None,
+            specular: SpecularMethod::None,
+        };
         match self {
             Technique::Direct => none,
             Technique::Rsm => Methods { diffuse: DiffuseMethod::Rsm, ..none },
@@ -205,13 +210,22 @@ impl Methods {
 
     /// Chooses the method of one slot by name.
     pub fn set(&mut self, slot: Slot, method: &str) -> Result<(), SettingsError> {
-        let unknown = |known: &[&str]| SettingsError::UnknownMethod { slot, method: method.to_owned(), known: known.join(", ") };
+        let unknown =
+            |known: &[&str]| SettingsError::UnknownMethod { slot, method: method.to_owned(), known: known.join(", ") };
         match slot {
             Slot::Emission => return Err(unknown(&["surface"])),
-            Slot::Direct => self.direct = DirectMethod::from_name(method).ok_or_else(|| unknown(DirectMethod::NAMES))?,
-            Slot::Diffuse => self.diffuse = DiffuseMethod::from_name(method).ok_or_else(|| unknown(DiffuseMethod::NAMES))?,
-            Slot::Caustics => self.caustics = CausticsMethod::from_name(method).ok_or_else(|| unknown(CausticsMethod::NAMES))?,
-            Slot::Specular => self.specular = SpecularMethod::from_name(method).ok_or_else(|| unknown(SpecularMethod::NAMES))?,
+            Slot::Direct => {
+                self.direct = DirectMethod::from_name(method).ok_or_else(|| unknown(DirectMethod::NAMES))?
+            }
+            Slot::Diffuse => {
+                self.diffuse = DiffuseMethod::from_name(method).ok_or_else(|| unknown(DiffuseMethod::NAMES))?
+            }
+            Slot::Caustics => {
+                self.caustics = CausticsMethod::from_name(method).ok_or_else(|| unknown(CausticsMethod::NAMES))?
+            }
+            Slot::Specular => {
+                self.specular = SpecularMethod::from_name(method).ok_or_else(|| unknown(SpecularMethod::NAMES))?
+            }
         }
         Ok(())
     }
@@ -288,13 +302,22 @@ impl Settings {
                 ..default
             },
             Preset::High => Settings {
-                lights: LightSettings { resolution: 1024, emitter_samples: 32, emitter_resolution: 256, sky_samples: 64 },
+                lights: LightSettings {
+                    resolution: 1024,
+                    emitter_samples: 32,
+                    emitter_resolution: 256,
+                    sky_samples: 64,
+                },
                 shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
                 rsm: RsmSettings { vpls: 1024 },
                 ..default
             },
             // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel.
-            Preset::Paper => Settings { lights: LightSettings { resolution: 512, ..lights }, rsm: RsmSettings { vpls: 400 }, ..default },
+            Preset::Paper => Settings {
+                lights: LightSettings { resolution: 512, ..lights },
+                rsm: RsmSettings { vpls: 400 },
+                ..default
+            },
         }
     }
 
@@ -336,7 +359,9 @@ impl Settings {
         let Ok(Value::Object(document)) = serde_json::to_value(self) else { return Vec::new() };
         let choices = ["technique", "preset", "methods"];
         let pieces = document.into_iter().filter(|(name, _)| !choices.contains(&name.as_str()));
-        pieces.filter_map(|(name, value)| if let Value::Object(options) = value { Some((name, options)) } else { None }).collect()
+        pieces
+            .filter_map(|(name, value)| if let Value::Object(options) = value { Some((name, options)) } else { None })
+            .collect()
     }
 
     fn check(&self, key: &str) -> Result<(), String> {
@@ -349,7 +374,9 @@ impl Settings {
             "lights.emitter_resolution" => within(self.lights.emitter_resolution, 16, 1024),
             "lights.sky_samples" => within(self.lights.sky_samples, 1, 256),
             "shadow.filter_radius" => within(self.shadow.filter_radius, 0, 4),
-            "shadow.normal_offset" if !(0.0..=16.0).contains(&self.shadow.normal_offset) => Err("it takes 0 to 16".to_owned()),
+            "shadow.normal_offset" if !(0.0..=16.0).contains(&self.shadow.normal_offset) => {
+                Err("it takes 0 to 16".to_owned())
+            }
             "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
             _ => Ok(()),
         }

@@ -74,22 +74,14 @@ impl Pose {
         let matrix = transform.matrix3;
         let (scale, rotation, translation) = if matrix.determinant() == 0.0 {
             (
-                DVec3::new(
-                    matrix.x_axis.length(),
-                    matrix.y_axis.length(),
-                    matrix.z_axis.length(),
-                ),
+                DVec3::new(matrix.x_axis.length(), matrix.y_axis.length(), matrix.z_axis.length()),
                 DQuat::IDENTITY,
                 transform.translation,
             )
         } else {
             transform.to_scale_rotation_translation()
         };
-        Pose {
-            translation,
-            rotation,
-            scale,
-        }
+        Pose { translation, rotation, scale }
     }
 
     pub(super) fn transform(&self) -> DAffine3 {
@@ -115,19 +107,13 @@ impl Pose {
 /// The nearest rotation; the identity if there is none.
 pub(super) fn unit_quaternion(value: [f64; 4]) -> DQuat {
     let quaternion = DQuat::from_array(value);
-    if quaternion.length_squared().is_normal() {
-        quaternion.normalize()
-    } else {
-        DQuat::IDENTITY
-    }
+    if quaternion.length_squared().is_normal() { quaternion.normalize() } else { DQuat::IDENTITY }
 }
 
 impl Channel {
     /// The value at a time; before the first and after the last keyframe, theirs. `None` without keyframes.
     fn sample(&self, seconds: f64) -> Option<[f64; 4]> {
-        let after = self
-            .times
-            .partition_point(|&time| f64::from(time) <= seconds);
+        let after = self.times.partition_point(|&time| f64::from(time) <= seconds);
         let last = self.times.len().checked_sub(1)?;
         let key = after.saturating_sub(1);
         if after == 0 || key == last || self.interpolation == Interpolation::Step {
@@ -149,15 +135,9 @@ impl Channel {
         }
         if self.property == Property::Rotation {
             // glam takes the shortest arc.
-            return Some(
-                unit_quaternion(from)
-                    .slerp(unit_quaternion(to), t)
-                    .to_array(),
-            );
+            return Some(unit_quaternion(from).slerp(unit_quaternion(to), t).to_array());
         }
-        Some(std::array::from_fn(|lane| {
-            from[lane] + (to[lane] - from[lane]) * t
-        }))
+        Some(std::array::from_fn(|lane| from[lane] + (to[lane] - from[lane]) * t))
     }
 
     fn value(&self, key: usize) -> Option<[f64; 4]> {

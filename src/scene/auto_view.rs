@@ -38,29 +38,15 @@ struct Triangle([Vec3; 3]);
 
 /// The view of [`Scene::camera_view`] for a scene without cameras.
 pub(super) fn find(scene: &Scene) -> CameraView {
-    let bounds = scene.bounds().unwrap_or(Bounds {
-        min: DVec3::NEG_ONE,
-        max: DVec3::ONE,
-    });
-    let radius = if bounds.radius() > 0.0 {
-        bounds.radius()
-    } else {
-        1.0
-    };
+    let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE });
+    let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
     let triangles = triangles(scene, bounds.center(), radius);
-    let candidates: Vec<CameraView> = OUTSIDE
-        .iter()
-        .map(|&(towards_eye, up)| outside(&bounds, radius, towards_eye, up))
-        .collect();
-    let suits = |view: &&CameraView| {
-        share_of_fronts(&triangles, view, bounds.center(), radius) >= ENOUGH_FRONTS
-    };
+    let candidates: Vec<CameraView> =
+        OUTSIDE.iter().map(|&(towards_eye, up)| outside(&bounds, radius, towards_eye, up)).collect();
+    let suits = |view: &&CameraView| share_of_fronts(&triangles, view, bounds.center(), radius) >= ENOUGH_FRONTS;
     // Most objects suit the first view; only otherwise are the rest worth drawing.
     let (first, rest) = candidates.split_at(1);
-    let suited = first
-        .iter()
-        .find(suits)
-        .or_else(|| rest.par_iter().find_first(suits));
+    let suited = first.iter().find(suits).or_else(|| rest.par_iter().find_first(suits));
     let mut view = suited.cloned().unwrap_or_else(|| inside(&bounds, radius));
     view.name = "automatic".to_owned();
     view.automatic = true;
@@ -68,41 +54,23 @@ pub(super) fn find(scene: &Scene) -> CameraView {
 }
 
 fn perspective(degrees: f64, near: f64) -> Projection {
-    Projection::Perspective {
-        vertical_fov: degrees.to_radians(),
-        aspect: None,
-        near,
-    }
+    Projection::Perspective { vertical_fov: degrees.to_radians(), aspect: None, near }
 }
 
 /// Looks at the middle from so far that all corners of the bounds are in a square picture.
 fn outside(bounds: &Bounds, radius: f64, towards_eye: DVec3, up: DVec3) -> CameraView {
     let (center, half) = (bounds.center(), bounds.size() * 0.5);
-    let frame = CameraView::look_at(
-        center + towards_eye,
-        center,
-        up,
-        perspective(OUTSIDE_FOV_DEGREES, 1.0),
-    )
-    .world
-    .matrix3;
+    let frame =
+        CameraView::look_at(center + towards_eye, center, up, perspective(OUTSIDE_FOV_DEGREES, 1.0)).world.matrix3;
     let tangent = (OUTSIDE_FOV_DEGREES.to_radians() * 0.5).tan();
-    let corners = (0..8).map(|corner| {
-        half * DVec3::from(std::array::from_fn(|axis| {
-            if corner >> axis & 1 == 0 { -1.0 } else { 1.0 }
-        }))
-    });
+    let corners = (0..8)
+        .map(|corner| half * DVec3::from(std::array::from_fn(|axis| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 })));
     let distance = corners.fold(radius * 1e-3, |distance, corner| {
         let seen = frame.transpose() * corner;
         distance.max(seen.x.abs().max(seen.y.abs()) / tangent + seen.z)
     });
     let eye = center + frame.z_axis * distance * MARGIN;
-    CameraView::look_at(
-        eye,
-        center,
-        up,
-        perspective(OUTSIDE_FOV_DEGREES, radius * 1e-3),
-    )
+    CameraView::look_at(eye, center, up, perspective(OUTSIDE_FOV_DEGREES, radius * 1e-3))
 }
 
 /// Looks along the longer horizontal axis from near its positive end, a little below the middle of the room.
@@ -110,41 +78,23 @@ fn inside(bounds: &Bounds, radius: f64) -> CameraView {
     let size = bounds.size();
     // A square room is seen along z, whatever the rounding of its sizes.
     let along_x = size.x > size.z * 1.001;
-    let axis = if along_x {
-        DVec3::X * size.x
-    } else {
-        DVec3::Z * size.z
-    };
+    let axis = if along_x { DVec3::X * size.x } else { DVec3::Z * size.z };
     let middle = bounds.center() - DVec3::Y * 0.1 * size.y;
-    CameraView::look_at(
-        middle + axis * 0.35,
-        middle - axis,
-        DVec3::Y,
-        perspective(INSIDE_FOV_DEGREES, radius * 1e-3),
-    )
+    CameraView::look_at(middle + axis * 0.35, middle - axis, DVec3::Y, perspective(INSIDE_FOV_DEGREES, radius * 1e-3))
 }
 
 fn triangles(scene: &Scene, center: DVec3, radius: f64) -> Vec<Triangle> {
-    let count: u64 = scene
-        .instances()
-        .iter()
-        .map(|it| scene.primitive(it).triangle_count() as u64)
-        .sum();
+    let count: u64 = scene.instances().iter().map(|it| scene.primitive(it).triangle_count() as u64).sum();
     let stride = count.div_ceil(MOST_TRIANGLES).max(1) as usize;
     let all = scene.instances().par_iter().flat_map_iter(|it| {
-        scene
-            .primitive(it)
-            .triangles()
-            .step_by(stride)
-            .map(move |triangle| {
-                let world =
-                    triangle.map(|corner| it.world.transform_point3(Vec3::from(corner).as_dvec3()));
-                let mut corners = world.map(|corner| ((corner - center) / radius).as_vec3());
-                if it.flips_winding {
-                    corners.swap(1, 2);
-                }
-                Triangle(corners)
-            })
+        scene.primitive(it).triangles().step_by(stride).map(move |triangle| {
+            let world = triangle.map(|corner| it.world.transform_point3(Vec3::from(corner).as_dvec3()));
+            let mut corners = world.map(|corner| ((corner - center) / radius).as_vec3());
+            if it.flips_winding {
+                corners.swap(1, 2);
+            }
+            Triangle(corners)
+        })
     });
     all.collect()
 }
@@ -163,11 +113,8 @@ fn share_of_fronts(triangles: &[Triangle], view: &CameraView, center: DVec3, rad
         }
         let [a, b, c] = seen.map(|corner| {
             let inverse_depth = -1.0 / corner.z;
-            Vec3::new(
-                corner.x * inverse_depth * scale,
-                -corner.y * inverse_depth * scale,
-                inverse_depth,
-            ) + Vec3::new(SIZE as f32 * 0.5, SIZE as f32 * 0.5, 0.0)
+            Vec3::new(corner.x * inverse_depth * scale, -corner.y * inverse_depth * scale, inverse_depth)
+                + Vec3::new(SIZE as f32 * 0.5, SIZE as f32 * 0.5, 0.0)
         });
         // Twice the signed area in the picture; y points down, so front faces are negative.
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -198,13 +145,6 @@ fn share_of_fronts(triangles: &[Triangle], view: &CameraView, center: DVec3, rad
         }
     }
     let covered = pixels.iter().filter(|pixel| pixel.0 > 0.0).count();
-    let fronts = pixels
-        .iter()
-        .filter(|pixel| pixel.0 > 0.0 && pixel.1)
-        .count();
-    if covered == 0 {
-        0.0
-    } else {
-        fronts as f64 / covered as f64
-    }
+    let fronts = pixels.iter().filter(|pixel| pixel.0 > 0.0 && pixel.1).count();
+    if covered == 0 { 0.0 } else { fronts as f64 / covered as f64 }
 }

@@ -19,7 +19,24 @@ macro_rules! builtins {
     };
 }
 
-builtins! {}
+builtins! {
+    "plane" => "plane.glb",
+    "furnace" => "furnace.glb",
+    "cornell-empty" => "cornell-empty.glb",
+    "cornell-point" => "cornell-point.glb",
+    "cornell-spot" => "cornell-spot.glb",
+    "cornell-panel" => "cornell-panel.glb",
+    "corridor" => "corridor.glb",
+    "two-rooms" => "two-rooms.glb",
+    "leak" => "leak.glb",
+    "ring" => "ring.glb",
+    "ring-occluded" => "ring-occluded.glb",
+    "water" => "water.glb",
+    "maze" => "maze.glb",
+    "lights" => "lights.glb",
+    "textured" => "textured.glb",
+    "animated" => "animated.glb",
+}
 
 /// The names of all built-in scenes, in the order in which they are best read.
 pub fn builtin_names() -> &'static [&'static str] {
@@ -42,19 +59,11 @@ impl Scene {
     /// [`SceneError::UnknownScene`], which lists the built-in scenes; else those of [`Scene::load`].
     pub fn open(spec: &str) -> Result<Scene, SceneError> {
         let path = Path::new(spec);
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_ascii_lowercase());
-        if path.is_file()
-            || extension.is_some_and(|extension| extension == "gltf" || extension == "glb")
-        {
+        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        if path.is_file() || extension.is_some_and(|extension| extension == "gltf" || extension == "glb") {
             return Scene::load(path);
         }
-        Scene::builtin(spec).unwrap_or_else(|| {
-            Err(SceneError::UnknownScene {
-                name: spec.to_owned(),
-                known: NAMES.join(", "),
-            })
-        })
+        Scene::builtin(spec)
+            .unwrap_or_else(|| Err(SceneError::UnknownScene { name: spec.to_owned(), known: NAMES.join(", ") }))
     }
 }

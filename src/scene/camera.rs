@@ -43,11 +43,7 @@ impl Camera {
     /// Says which number of the projection is out of range, if any is.
     pub(super) fn fault(&self) -> Option<String> {
         let fault = match self.projection {
-            Projection::Perspective {
-                vertical_fov,
-                aspect,
-                near,
-            } => {
+            Projection::Perspective { vertical_fov, aspect, near } => {
                 if !(vertical_fov > 0.0 && vertical_fov < PI) {
                     format!("its vertical angle of {vertical_fov} rad is not between 0 and π")
                 } else if !(near > 0.0 && near.is_finite()) {
@@ -58,16 +54,8 @@ impl Camera {
                     return None;
                 }
             }
-            Projection::Orthographic {
-                half_width,
-                half_height,
-                near,
-                far,
-            } => {
-                if ![half_width, half_height, near, far]
-                    .iter()
-                    .all(|length| length.is_finite())
-                {
+            Projection::Orthographic { half_width, half_height, near, far } => {
+                if ![half_width, half_height, near, far].iter().all(|length| length.is_finite()) {
                     "a length of its projection is not finite".to_owned()
                 } else if half_width == 0.0 || half_height == 0.0 {
                     "it shows an area without width or height".to_owned()
@@ -111,37 +99,18 @@ impl CameraView {
 /// The rigid motion nearest to a camera's frame: the viewing direction is kept, then the up direction as far as it can be.
 fn rigid(frame: DMat3, position: DVec3) -> DAffine3 {
     let back = frame.z_axis.try_normalize().unwrap_or(DVec3::Z);
-    let right = frame
-        .y_axis
-        .cross(back)
-        .try_normalize()
-        .unwrap_or_else(|| back.any_orthonormal_vector());
-    DAffine3 {
-        matrix3: DMat3::from_cols(right, back.cross(right), back),
-        translation: position,
-    }
+    let right = frame.y_axis.cross(back).try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+    DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: position }
 }
 
 impl Scene {
     /// Every placed camera: name, node, camera; in the order that indices of [`Scene::camera_view`] count.
     pub fn placed_cameras(&self) -> Vec<(String, NodeId, CameraId)> {
-        let placed = self
-            .nodes()
-            .iter()
-            .enumerate()
-            .filter_map(|(index, node)| Some((index, node, node.camera?)));
+        let placed = self.nodes().iter().enumerate().filter_map(|(index, node)| Some((index, node, node.camera?)));
         placed
             .map(|(index, node, camera)| {
                 let own = &self.cameras()[camera.0].name;
-                (
-                    if own.is_empty() {
-                        node.name.clone()
-                    } else {
-                        own.clone()
-                    },
-                    NodeId(index),
-                    camera,
-                )
+                (if own.is_empty() { node.name.clone() } else { own.clone() }, NodeId(index), camera)
             })
             .collect()
     }
@@ -157,18 +126,9 @@ impl Scene {
             None => placed.first(),
             Some(name) => {
                 let by_name = placed.iter().find(|(own, ..)| own == name);
-                let by_node = || {
-                    placed
-                        .iter()
-                        .find(|(_, node, _)| self.nodes()[node.0].name == name)
-                };
+                let by_node = || placed.iter().find(|(_, node, _)| self.nodes()[node.0].name == name);
                 let by_index = || placed.get(name.parse::<usize>().ok()?);
-                Some(
-                    by_name
-                        .or_else(by_node)
-                        .or_else(by_index)
-                        .ok_or_else(|| self.unknown_camera(name, &placed))?,
-                )
+                Some(by_name.or_else(by_node).or_else(by_index).ok_or_else(|| self.unknown_camera(name, &placed))?)
             }
         };
         let Some((name, node, camera)) = chosen else {
@@ -184,19 +144,12 @@ impl Scene {
     }
 
     fn unknown_camera(&self, name: &str, placed: &[(String, NodeId, CameraId)]) -> SceneError {
-        let names: Vec<String> = placed
-            .iter()
-            .enumerate()
-            .map(|(index, (name, ..))| format!("{index} {name:?}"))
-            .collect();
+        let names: Vec<String> =
+            placed.iter().enumerate().map(|(index, (name, ..))| format!("{index} {name:?}")).collect();
         let known = match names.len() {
             0 => "it has none: leave the camera out for an automatic view".to_owned(),
             _ => format!("it has {}", names.join(", ")),
         };
-        SceneError::UnknownCamera {
-            scene: self.name.clone(),
-            camera: name.to_owned(),
-            known,
-        }
+        SceneError::UnknownCamera { scene: self.name.clone(), camera: name.to_owned(), known }
     }
 }

@@ -17,12 +17,8 @@ impl Scene {
     pub fn add_texture(&mut self, texture: Texture) -> Result<TextureId, SceneError> {
         let texels = u64::from(texture.width) * u64::from(texture.height);
         if texels == 0 || texels * 4 != texture.rgba8.len() as u64 {
-            let fault = format!(
-                "{}×{} texels do not fit its {} bytes",
-                texture.width,
-                texture.height,
-                texture.rgba8.len()
-            );
+            let fault =
+                format!("{}×{} texels do not fit its {} bytes", texture.width, texture.height, texture.rgba8.len());
             return Err(self.invalid("texture", &texture.name, fault));
         }
         self.revisions.materials += 1;
@@ -67,11 +63,7 @@ impl Scene {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
             self.check("material", primitive.material.0, self.materials.len())?;
             if let Some(fault) = primitive.fault() {
-                return Err(self.invalid(
-                    "mesh",
-                    &mesh.name,
-                    format!("primitive {index}: {fault}"),
-                ));
+                return Err(self.invalid("mesh", &mesh.name, format!("primitive {index}: {fault}")));
             }
         }
         self.meshes.push(mesh);
@@ -102,13 +94,7 @@ impl Scene {
 
     /// Sets the sky's radiance in W/(m² sr). Channels that are negative or not finite become 0.
     pub fn set_sky(&mut self, radiance: [f32; 3]) {
-        let radiance = radiance.map(|channel| {
-            if channel.is_finite() {
-                channel.max(0.0)
-            } else {
-                0.0
-            }
-        });
+        let radiance = radiance.map(|channel| if channel.is_finite() { channel.max(0.0) } else { 0.0 });
         self.revisions.lights += u64::from(self.sky != radiance);
         self.sky = radiance;
     }
@@ -143,16 +129,8 @@ impl Scene {
         let light = self.add_light(spec.light.clone())?;
         let back = (-spec.direction).try_normalize().unwrap_or(DVec3::Z);
         let right = back.any_orthonormal_vector();
-        let local = DAffine3 {
-            matrix3: DMat3::from_cols(right, back.cross(right), back),
-            translation: spec.position,
-        };
-        self.add_node(Node {
-            name: spec.light.name.clone(),
-            local,
-            light: Some(light),
-            ..Node::default()
-        })?;
+        let local = DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: spec.position };
+        self.add_node(Node { name: spec.light.name.clone(), local, light: Some(light), ..Node::default() })?;
         Ok(light)
     }
 
@@ -160,46 +138,22 @@ impl Scene {
         for texture in material.textures() {
             self.check("texture", texture.texture.0, self.textures.len())?;
         }
-        material.fault().map_or(Ok(()), |fault| {
-            Err(self.invalid("material", &material.name, fault))
-        })
+        material.fault().map_or(Ok(()), |fault| Err(self.invalid("material", &material.name, fault)))
     }
 
     fn check_camera(&self, camera: &Camera) -> Result<(), SceneError> {
-        camera.fault().map_or(Ok(()), |fault| {
-            Err(self.invalid("camera", &camera.name, fault))
-        })
+        camera.fault().map_or(Ok(()), |fault| Err(self.invalid("camera", &camera.name, fault)))
     }
 
     fn check_light(&self, light: &Light) -> Result<(), SceneError> {
-        light.fault().map_or(Ok(()), |fault| {
-            Err(self.invalid("light", &light.name, fault))
-        })
+        light.fault().map_or(Ok(()), |fault| Err(self.invalid("light", &light.name, fault)))
     }
 
-    pub(super) fn check(
-        &self,
-        kind: &'static str,
-        index: usize,
-        count: usize,
-    ) -> Result<(), SceneError> {
-        if index < count {
-            Ok(())
-        } else {
-            Err(SceneError::UnknownId {
-                scene: self.name.clone(),
-                kind,
-                index,
-                count,
-            })
-        }
+    pub(super) fn check(&self, kind: &'static str, index: usize, count: usize) -> Result<(), SceneError> {
+        if index < count { Ok(()) } else { Err(SceneError::UnknownId { scene: self.name.clone(), kind, index, count }) }
     }
 
     pub(super) fn invalid(&self, kind: &str, name: &str, fault: String) -> SceneError {
-        SceneError::InvalidObject {
-            scene: self.name.clone(),
-            object: format!("the {kind} {name:?}"),
-            fault,
-        }
+        SceneError::InvalidObject { scene: self.name.clone(), object: format!("the {kind} {name:?}"), fault }
     }
 }

@@ -91,34 +91,21 @@ impl Row {
         };
         let ends: Vec<f64> = emitters.iter().scan(0.0, running_sum).collect();
         let interval = ends.last().copied().unwrap_or(0.0) / count as f64;
-        Row {
-            emitters,
-            ends,
-            interval,
-        }
+        Row { emitters, ends, interval }
     }
 
     /// The triangle at a place in the row.
     fn at(&self, place: f64) -> usize {
-        self.ends
-            .partition_point(|&end| end <= place)
-            .min(self.ends.len() - 1)
+        self.ends.partition_point(|&end| end <= place).min(self.ends.len() - 1)
     }
 
     fn start(&self, index: usize) -> f64 {
-        if index == 0 {
-            0.0
-        } else {
-            self.ends[index - 1]
-        }
+        if index == 0 { 0.0 } else { self.ends[index - 1] }
     }
 
     /// Power and area of all pieces of triangles in an interval.
     fn flux(&self, sample: usize) -> ([f64; 3], f64) {
-        let (low, high) = (
-            self.interval * sample as f64,
-            self.interval * (sample + 1) as f64,
-        );
+        let (low, high) = (self.interval * sample as f64, self.interval * (sample + 1) as f64);
         let (mut power, mut area) = ([0.0; 3], 0.0);
         for index in self.at(low)..=self.at(high) {
             let emitter = &self.emitters[index];
@@ -139,8 +126,7 @@ impl Row {
         let rank = sample as f64 - (start / self.interval - MIDDLE).ceil().max(0.0);
         let neighbours = (length / self.interval).ceil().clamp(1.0, 1e9) as u32;
         let u = ((place - start) / length).clamp(0.0, 1.0);
-        let v =
-            radical_inverse(rank.max(0.0) as u32) + 0.5 / f64::from(neighbours.next_power_of_two());
+        let v = radical_inverse(rank.max(0.0) as u32) + 0.5 / f64::from(neighbours.next_power_of_two());
         let emitter = &self.emitters[index];
         (emitter, emitter.point(u, v.min(1.0)))
     }
@@ -150,15 +136,9 @@ impl Scene {
     /// Places `count` emitters on the emissive surfaces, by power. Their powers add up to the power that all emissive surfaces
     /// send out. Empty if nothing emits or `count` is 0. The same scene gives the same emitters.
     pub fn emitter_samples(&self, count: usize) -> Vec<EmitterSample> {
-        let emissive: Vec<&Instance> = self
-            .instances()
-            .iter()
-            .filter(|it| self.material_of(it).emits())
-            .collect();
-        let emitters: Vec<Vec<Emitter>> = emissive
-            .par_iter()
-            .map(|it| emitters(self, it, self.primitive(it), self.material_of(it)))
-            .collect();
+        let emissive: Vec<&Instance> = self.instances().iter().filter(|it| self.material_of(it).emits()).collect();
+        let emitters: Vec<Vec<Emitter>> =
+            emissive.par_iter().map(|it| emitters(self, it, self.primitive(it), self.material_of(it))).collect();
         let row = Row::new(emitters.into_iter().flatten().collect(), count);
         if !(row.interval > 0.0 && row.interval.is_finite()) {
             return Vec::new();
@@ -180,64 +160,33 @@ impl Scene {
 }
 
 /// The emissive triangles of an instance that have area and power.
-fn emitters(
-    scene: &Scene,
-    instance: &Instance,
-    primitive: &Primitive,
-    material: &Material,
-) -> Vec<Emitter> {
+fn emitters(scene: &Scene, instance: &Instance, primitive: &Primitive, material: &Material) -> Vec<Emitter> {
     let texture = material.emissive_texture.and_then(|reference| {
         let coordinates = primitive.texcoords[reference.texcoord as usize].as_ref()?;
-        Some((
-            reference,
-            coordinates,
-            &scene.textures()[reference.texture.0],
-        ))
+        Some((reference, coordinates, &scene.textures()[reference.texture.0]))
     });
     let sides = if material.double_sided { 2.0 } else { 1.0 };
-    let all = primitive
-        .indices
-        .chunks_exact(3)
-        .zip(primitive.triangles())
-        .map(|(vertices, triangle)| {
-            let mut corners = triangle.map(|corner| {
-                instance
-                    .world
-                    .transform_point3(Vec3::from(corner).as_dvec3())
+    let all = primitive.indices.chunks_exact(3).zip(primitive.triangles()).map(|(vertices, triangle)| {
+        let mut corners = triangle.map(|corner| instance.world.transform_point3(Vec3::from(corner).as_dvec3()));
+        if instance.flips_winding {
+            corners.swap(1, 2);
+        }
+        let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() * 0.5;
+        let mut radiance = material.emissive;
+        if let Some((reference, coordinates, texture)) = texture {
+            let corner_coordinates: [[f32; 2]; 3] =
+                std::array::from_fn(|corner| reference.apply(coordinates[vertices[corner] as usize]));
+            let sum = TEXTURE_POINTS.iter().fold(Vec3::ZERO, |sum, weights| {
+                let point =
+                    [0, 1].map(|axis| (0..3).map(|corner| weights[corner] * corner_coordinates[corner][axis]).sum());
+                sum + Vec3::from_slice(&texture.texel(point)[..3])
             });
-            if instance.flips_winding {
-                corners.swap(1, 2);
-            }
-            let area = (corners[1] - corners[0])
-                .cross(corners[2] - corners[0])
-                .length()
-                * 0.5;
-            let mut radiance = material.emissive;
-            if let Some((reference, coordinates, texture)) = texture {
-                let corner_coordinates: [[f32; 2]; 3] = std::array::from_fn(|corner| {
-                    reference.apply(coordinates[vertices[corner] as usize])
-                });
-                let sum = TEXTURE_POINTS.iter().fold(Vec3::ZERO, |sum, weights| {
-                    let point = [0, 1].map(|axis| {
-                        (0..3)
-                            .map(|corner| weights[corner] * corner_coordinates[corner][axis])
-                            .sum()
-                    });
-                    sum + Vec3::from_slice(&texture.texel(point)[..3])
-                });
-                radiance = (Vec3::from(radiance) * sum / TEXTURE_POINTS.len() as f32).to_array();
-            }
-            let power = radiance.map(|channel| f64::from(channel) * area * PI * sides);
-            Emitter {
-                node: instance.node,
-                corners,
-                area,
-                two_sided: material.double_sided,
-                power,
-            }
-        });
-    all.filter(|emitter| emitter.weight() > 0.0 && emitter.weight().is_finite())
-        .collect()
+            radiance = (Vec3::from(radiance) * sum / TEXTURE_POINTS.len() as f32).to_array();
+        }
+        let power = radiance.map(|channel| f64::from(channel) * area * PI * sides);
+        Emitter { node: instance.node, corners, area, two_sided: material.double_sided, power }
+    });
+    all.filter(|emitter| emitter.weight() > 0.0 && emitter.weight().is_finite()).collect()
 }
 
 /// Van der Corput's sequence in base 2: 0, 1/2, 1/4, 3/4, …

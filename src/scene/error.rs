@@ -32,9 +32,7 @@ pub enum SceneError {
         extensions: String,
     },
     /// No file and no built-in scene goes by this name.
-    #[error(
-        "there is no scene {name:?}: give a .gltf or .glb file, or one of the built-in scenes: {known}"
-    )]
+    #[error("there is no scene {name:?}: give a .gltf or .glb file, or one of the built-in scenes: {known}")]
     UnknownScene {
         /// What was asked for.
         name: String,

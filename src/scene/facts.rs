@@ -53,10 +53,7 @@ impl Facts {
 impl Scene {
     /// What the scene contains now.
     pub fn facts(&self) -> Facts {
-        let mut facts = Facts {
-            sky: self.sky().iter().any(|&channel| channel > 0.0),
-            ..Facts::default()
-        };
+        let mut facts = Facts { sky: self.sky().iter().any(|&channel| channel > 0.0), ..Facts::default() };
         for instance in self.instances() {
             let (primitive, material) = (self.primitive(instance), self.material_of(instance));
             if primitive.indices.is_empty() {
@@ -64,23 +61,17 @@ impl Scene {
             }
             facts.triangles += primitive.triangle_count() as u64;
             facts.vertex_colors |= primitive.colors.is_some();
-            facts.normal_mapped |=
-                material.normal_texture.is_some() && primitive.tangents.is_some();
+            facts.normal_mapped |= material.normal_texture.is_some() && primitive.tangents.is_some();
             facts.textured |= material.textures().next().is_some();
             facts.alpha_masked |= material.alpha != Alpha::Opaque;
             facts.emissive |= material.emits();
             facts.diffuse |= has_diffuse_lobe(material);
             facts.specular |= has_specular_lobe(material);
             facts.glossy |= has_specular_lobe(material)
-                && (material.roughness < GLOSSY_ROUGHNESS
-                    || material.metallic_roughness_texture.is_some());
+                && (material.roughness < GLOSSY_ROUGHNESS || material.metallic_roughness_texture.is_some());
             facts.transmissive |= transmits(material);
         }
-        for light in self
-            .placed_lights()
-            .iter()
-            .filter(|light| light.intensity.iter().any(|&channel| channel > 0.0))
-        {
+        for light in self.placed_lights().iter().filter(|light| light.intensity.iter().any(|&channel| channel > 0.0)) {
             facts.punctual_lights += 1;
             match light.kind {
                 LightKind::Point => facts.point_lights += 1,
@@ -88,10 +79,7 @@ impl Scene {
                 LightKind::Directional => facts.directional_lights += 1,
             }
         }
-        facts.animated = self
-            .animations()
-            .iter()
-            .any(|animation| !animation.channels.is_empty());
+        facts.animated = self.animations().iter().any(|animation| !animation.channels.is_empty());
         facts
     }
 }

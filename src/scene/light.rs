@@ -21,21 +21,15 @@ pub struct Light {
 impl Light {
     /// Says which number is out of range, if any is.
     pub(super) fn fault(&self) -> Option<String> {
-        if !self
-            .intensity
-            .iter()
-            .all(|channel| channel.is_finite() && *channel >= 0.0)
-        {
+        if !self.intensity.iter().all(|channel| channel.is_finite() && *channel >= 0.0) {
             return Some("its intensity is negative or not finite".into());
         }
         match self.kind {
-            LightKind::Spot {
-                inner_angle,
-                outer_angle,
-            } if !(inner_angle >= 0.0
-                && inner_angle <= outer_angle
-                && outer_angle > 0.0
-                && outer_angle <= FRAC_PI_2) =>
+            LightKind::Spot { inner_angle, outer_angle }
+                if !(inner_angle >= 0.0
+                    && inner_angle <= outer_angle
+                    && outer_angle > 0.0
+                    && outer_angle <= FRAC_PI_2) =>
             {
                 Some(format!(
                     "its half angles {inner_angle} and {outer_angle} rad are not 0 ≤ inner ≤ outer ≤ π/2, outer above 0"
@@ -113,81 +107,44 @@ impl LightSpec {
             "point" => "point:X,Y,Z,W/sr",
             "spot" => "spot:X,Y,Z,DX,DY,DZ,ANGLE,W/sr",
             _ => {
-                return Err(format!(
-                    "the light {spec:?} is of no known kind; write sun:…, point:… or spot:…"
-                ));
+                return Err(format!("the light {spec:?} is of no known kind; write sun:…, point:… or spot:…"));
             }
         };
         let wrong = |what: &str| format!("the light {spec:?} {what}; write {form}");
         let number = |index: usize| {
-            let value = fields[index]
-                .parse()
-                .ok()
-                .filter(|value: &f64| value.is_finite());
+            let value = fields[index].parse().ok().filter(|value: &f64| value.is_finite());
             value.ok_or_else(|| wrong(&format!("has {:?} where a number belongs", fields[index])))
         };
-        let vector = |index: usize| {
-            Ok::<_, String>(DVec3::new(
-                number(index)?,
-                number(index + 1)?,
-                number(index + 2)?,
-            ))
-        };
+        let vector = |index: usize| Ok::<_, String>(DVec3::new(number(index)?, number(index + 1)?, number(index + 2)?));
         let strength = |index: usize| {
             let strength = parse_rgb(fields[index], ':');
             strength.ok_or_else(|| {
-                wrong(&format!(
-                    "has {:?} where a strength of at least 0, or R:G:B, belongs",
-                    fields[index]
-                ))
+                wrong(&format!("has {:?} where a strength of at least 0, or R:G:B, belongs", fields[index]))
             })
         };
         let (kind, position, direction, intensity) = match (kind, fields.len()) {
             ("sun", 2 | 3) => {
                 let (azimuth, elevation) = (number(0)?.to_radians(), number(1)?.to_radians());
-                let to_sun = DVec3::new(
-                    azimuth.sin() * elevation.cos(),
-                    elevation.sin(),
-                    -azimuth.cos() * elevation.cos(),
-                );
-                let irradiance = if fields.len() == 3 {
-                    strength(2)?
-                } else {
-                    [PI as f32; 3]
-                };
+                let to_sun =
+                    DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), -azimuth.cos() * elevation.cos());
+                let irradiance = if fields.len() == 3 { strength(2)? } else { [PI as f32; 3] };
                 (LightKind::Directional, DVec3::ZERO, -to_sun, irradiance)
             }
             ("point", 4) => (LightKind::Point, vector(0)?, DVec3::NEG_Y, strength(3)?),
             ("spot", 8) => {
-                let direction = vector(3)?
-                    .try_normalize()
-                    .ok_or_else(|| wrong("shines in the direction 0,0,0"))?;
+                let direction = vector(3)?.try_normalize().ok_or_else(|| wrong("shines in the direction 0,0,0"))?;
                 let degrees = number(6)?;
                 if !(degrees > 0.0 && degrees <= 90.0) {
-                    return Err(wrong(&format!(
-                        "has a half angle of {degrees}°, not above 0 and at most 90"
-                    )));
+                    return Err(wrong(&format!("has a half angle of {degrees}°, not above 0 and at most 90")));
                 }
                 let outer_angle = (degrees.to_radians() as f32).min(FRAC_PI_2);
-                let kind = LightKind::Spot {
-                    inner_angle: 0.9 * outer_angle,
-                    outer_angle,
-                };
+                let kind = LightKind::Spot { inner_angle: 0.9 * outer_angle, outer_angle };
                 (kind, vector(0)?, direction, strength(7)?)
             }
             (_, count) => return Err(wrong(&format!("has {count} values"))),
         };
-        let light = Light {
-            name: spec.to_owned(),
-            kind,
-            intensity,
-            range: None,
-        };
-        Ok(LightSpec {
-            light,
-            position,
-            direction,
-        })
+        let light = Light { name: spec.to_owned(), kind, intensity, range: None };
+        Ok(LightSpec { light, position, direction })
     }
 }
 
@@ -196,21 +153,14 @@ impl LightSpec {
 /// # Errors
 /// A sentence on what belongs there.
 pub fn parse_sky(spec: &str) -> Result<[f32; 3], String> {
-    parse_rgb(spec, ',').ok_or_else(|| {
-        format!("the sky {spec:?} is not a radiance; write R,G,B, each a number of at least 0")
-    })
+    parse_rgb(spec, ',')
+        .ok_or_else(|| format!("the sky {spec:?} is not a radiance; write R,G,B, each a number of at least 0"))
 }
 
 fn parse_rgb(text: &str, separator: char) -> Option<[f32; 3]> {
     let channels: Option<Vec<f32>> = text
         .split(separator)
-        .map(|channel| {
-            channel
-                .trim()
-                .parse()
-                .ok()
-                .filter(|value: &f32| value.is_finite() && *value >= 0.0)
-        })
+        .map(|channel| channel.trim().parse().ok().filter(|value: &f32| value.is_finite() && *value >= 0.0))
         .collect();
     match channels?[..] {
         [grey] => Some([grey; 3]),

@@ -104,25 +104,15 @@ impl Material {
             ("thickness", &[self.thickness]),
             ("attenuation colour", &self.attenuation_color),
         ];
-        if let Some((what, _)) = numbers.iter().find(|(_, values)| {
-            !values
-                .iter()
-                .all(|value| value.is_finite() && *value >= 0.0)
-        }) {
+        if let Some((what, _)) =
+            numbers.iter().find(|(_, values)| !values.iter().all(|value| value.is_finite() && *value >= 0.0))
+        {
             return Some(format!("its {what} is negative or not finite"));
         }
-        if !self.normal_scale.is_finite()
-            || self.attenuation_distance.is_nan()
-            || self.attenuation_distance <= 0.0
-        {
-            return Some(
-                "its normal scale is not finite or its attenuation distance is not above 0".into(),
-            );
+        if !self.normal_scale.is_finite() || self.attenuation_distance.is_nan() || self.attenuation_distance <= 0.0 {
+            return Some("its normal scale is not finite or its attenuation distance is not above 0".into());
         }
-        let set = self
-            .textures()
-            .map(|texture| texture.texcoord)
-            .find(|&set| set > 1);
+        let set = self.textures().map(|texture| texture.texcoord).find(|&set| set > 1);
         set.map(|set| format!("it uses texture coordinate set {set}; there are only 0 and 1"))
     }
 
@@ -168,11 +158,7 @@ pub struct TextureRef {
 impl TextureRef {
     /// The texture as it is, on coordinate set 0.
     pub fn new(texture: TextureId) -> Self {
-        TextureRef {
-            texture,
-            texcoord: 0,
-            transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        }
+        TextureRef { texture, texcoord: 0, transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
     }
 
     /// Texture coordinates after the transform.
@@ -206,13 +192,8 @@ impl Texture {
         let column = self.wrap[0].texel(u, self.width);
         let row = self.wrap[1].texel(v, self.height);
         let at = (row as usize * self.width as usize + column as usize) * 4;
-        let [r, g, b, a] =
-            std::array::from_fn(|channel| f32::from(self.rgba8[at + channel]) / 255.0);
-        if self.srgb {
-            [srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b), a]
-        } else {
-            [r, g, b, a]
-        }
+        let [r, g, b, a] = std::array::from_fn(|channel| f32::from(self.rgba8[at + channel]) / 255.0);
+        if self.srgb { [srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b), a] } else { [r, g, b, a] }
     }
 }
 
@@ -242,9 +223,5 @@ impl Wrap {
 
 /// IEC 61966-2-1.
 fn srgb_to_linear(encoded: f32) -> f32 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

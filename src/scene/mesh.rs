@@ -44,21 +44,10 @@ impl Primitive {
     pub fn bytes(&self) -> usize {
         let texcoords = self.texcoords.iter().flatten();
         size_of_val(&self.positions[..])
-            + self
-                .normals
-                .as_ref()
-                .map_or(0, |values| size_of_val(&values[..]))
-            + self
-                .tangents
-                .as_ref()
-                .map_or(0, |values| size_of_val(&values[..]))
-            + texcoords
-                .map(|values| size_of_val(&values[..]))
-                .sum::<usize>()
-            + self
-                .colors
-                .as_ref()
-                .map_or(0, |values| size_of_val(&values[..]))
+            + self.normals.as_ref().map_or(0, |values| size_of_val(&values[..]))
+            + self.tangents.as_ref().map_or(0, |values| size_of_val(&values[..]))
+            + texcoords.map(|values| size_of_val(&values[..])).sum::<usize>()
+            + self.colors.as_ref().map_or(0, |values| size_of_val(&values[..]))
             + size_of_val(&self.indices[..])
     }
 
@@ -75,19 +64,12 @@ impl Primitive {
         let lengths = [
             ("normals", self.normals.as_ref().map(Vec::len)),
             ("tangents", self.tangents.as_ref().map(Vec::len)),
-            (
-                "texture coordinates 0",
-                self.texcoords[0].as_ref().map(Vec::len),
-            ),
-            (
-                "texture coordinates 1",
-                self.texcoords[1].as_ref().map(Vec::len),
-            ),
+            ("texture coordinates 0", self.texcoords[0].as_ref().map(Vec::len)),
+            ("texture coordinates 1", self.texcoords[1].as_ref().map(Vec::len)),
             ("colours", self.colors.as_ref().map(Vec::len)),
         ];
-        let other = lengths
-            .into_iter()
-            .find_map(|(what, length)| Some((what, length.filter(|&length| length != count)?)));
+        let other =
+            lengths.into_iter().find_map(|(what, length)| Some((what, length.filter(|&length| length != count)?)));
         other.map(|(what, length)| format!("it has {count} positions but {length} {what}"))
     }
 
@@ -96,18 +78,11 @@ impl Primitive {
         if let Some(fault) = self.length_fault() {
             return Some(fault);
         }
-        if let Some(vertex) = self
-            .positions
-            .iter()
-            .position(|position| !position.iter().all(|axis| axis.is_finite()))
-        {
+        if let Some(vertex) = self.positions.iter().position(|position| !position.iter().all(|axis| axis.is_finite())) {
             return Some(format!("the position of vertex {vertex} is not finite"));
         }
         if !self.indices.len().is_multiple_of(3) {
-            return Some(format!(
-                "{} indices do not make whole triangles",
-                self.indices.len()
-            ));
+            return Some(format!("{} indices do not make whole triangles", self.indices.len()));
         }
         let highest = self.indices.iter().max().copied();
         let count = self.positions.len();
@@ -160,10 +135,7 @@ impl Bounds {
 
     /// The smallest box that holds both.
     pub fn union(self, other: Bounds) -> Bounds {
-        Bounds {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
+        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 }
 
@@ -173,10 +145,5 @@ pub(super) fn bounds_of(primitive: &Primitive, world: &DAffine3) -> Option<Bound
         let [x, y, z] = primitive.positions[index as usize];
         world.transform_point3(DVec3::new(x.into(), y.into(), z.into()))
     });
-    corners
-        .map(|point| Bounds {
-            min: point,
-            max: point,
-        })
-        .reduce(Bounds::union)
+    corners.map(|point| Bounds { min: point, max: point }).reduce(Bounds::union)
 }

@@ -28,10 +28,7 @@ pub(super) fn repair_normals(primitive: &mut Primitive) {
                 }
             }
         }
-        normals
-            .iter_mut()
-            .filter(|normal| **normal == [0.0; 3])
-            .for_each(|normal| *normal = [0.0, 0.0, 1.0]);
+        normals.iter_mut().filter(|normal| **normal == [0.0; 3]).for_each(|normal| *normal = [0.0, 0.0, 1.0]);
     }
     primitive.normals = Some(normals);
 }
@@ -44,17 +41,10 @@ pub(super) fn complete(primitive: &mut Primitive, texture: TextureRef) {
         primitive.tangents = None;
         return;
     }
-    if let Some(tangents) = primitive
-        .tangents
-        .as_mut()
-        .filter(|_| primitive.normals.is_some())
-    {
+    if let Some(tangents) = primitive.tangents.as_mut().filter(|_| primitive.normals.is_some()) {
         let usable = tangents.iter_mut().all(|tangent| {
             let unit = Vec3::from_slice(&tangent[..3]).try_normalize();
-            *tangent = unit
-                .unwrap_or(Vec3::ZERO)
-                .extend(if tangent[3] < 0.0 { -1.0 } else { 1.0 })
-                .to_array();
+            *tangent = unit.unwrap_or(Vec3::ZERO).extend(if tangent[3] < 0.0 { -1.0 } else { 1.0 }).to_array();
             unit.is_some()
         });
         if usable {
@@ -73,32 +63,21 @@ fn make_flat(primitive: &mut Primitive) {
     let corners: Vec<u32> = primitive.indices.clone();
     gather(primitive, &corners);
     primitive.indices = (0..corners.len() as u32).collect();
-    let normals = primitive
-        .triangles()
-        .flat_map(|triangle| [face_normal(triangle).unwrap_or(Vec3::Z).to_array(); 3]);
+    let normals = primitive.triangles().flat_map(|triangle| [face_normal(triangle).unwrap_or(Vec3::Z).to_array(); 3]);
     primitive.normals = Some(normals.collect());
 }
 
 /// MikkTSpace gives each corner of each triangle a tangent; corners of a vertex whose tangents agree are one vertex again.
 fn generate(primitive: &mut Primitive, texture: TextureRef) {
     let corner_count = primitive.indices.len();
-    let mut corners = Corners {
-        primitive,
-        texture,
-        tangents: vec![[0.0; 4]; corner_count],
-    };
-    let coordinates = corners.primitive.positions.iter().flatten().chain(
-        corners
-            .primitive
-            .texcoords
-            .iter()
-            .flatten()
-            .flatten()
-            .flatten(),
-    );
-    if coordinates
-        .into_iter()
-        .all(|coordinate| coordinate.abs() < LARGEST_COORDINATE)
+    let mut corners = Corners { primitive, texture, tangents: vec![[0.0; 4]; corner_count] };
+    let coordinates = corners
+        .primitive
+        .positions
+        .iter()
+        .flatten()
+        .chain(corners.primitive.texcoords.iter().flatten().flatten().flatten());
+    if coordinates.into_iter().all(|coordinate| coordinate.abs() < LARGEST_COORDINATE)
         && generate_tangents(&mut corners).is_err()
     {
         corners.tangents.fill([0.0; 4]);
@@ -108,8 +87,7 @@ fn generate(primitive: &mut Primitive, texture: TextureRef) {
     const NONE: u32 = u32::MAX;
     // The new vertices of each old vertex, as linked lists: most hold one, and none of this hashes.
     let mut first = vec![NONE; primitive.positions.len()];
-    let (mut next, mut sources, mut new_tangents): (Vec<u32>, Vec<u32>, Vec<[f32; 4]>) =
-        Default::default();
+    let (mut next, mut sources, mut new_tangents): (Vec<u32>, Vec<u32>, Vec<[f32; 4]>) = Default::default();
     for (corner, tangent) in tangents.into_iter().enumerate() {
         let source = primitive.indices[corner];
         let mut vertex = first[source as usize];
@@ -129,10 +107,7 @@ fn generate(primitive: &mut Primitive, texture: TextureRef) {
     if let Some(normals) = &primitive.normals {
         for (tangent, normal) in new_tangents.iter_mut().zip(normals) {
             if *tangent == [0.0; 4] {
-                *tangent = Vec3::from(*normal)
-                    .any_orthonormal_vector()
-                    .extend(1.0)
-                    .to_array();
+                *tangent = Vec3::from(*normal).any_orthonormal_vector().extend(1.0).to_array();
             }
         }
     }
@@ -142,25 +117,12 @@ fn generate(primitive: &mut Primitive, texture: TextureRef) {
 /// Replaces the vertices by copies of the vertices `sources`. Tangents are dropped.
 fn gather(primitive: &mut Primitive, sources: &[u32]) {
     fn pick<T: Copy>(values: &mut Vec<T>, sources: &[u32]) {
-        *values = sources
-            .iter()
-            .map(|&source| values[source as usize])
-            .collect();
+        *values = sources.iter().map(|&source| values[source as usize]).collect();
     }
     pick(&mut primitive.positions, sources);
-    primitive
-        .normals
-        .iter_mut()
-        .for_each(|values| pick(values, sources));
-    primitive
-        .texcoords
-        .iter_mut()
-        .flatten()
-        .for_each(|values| pick(values, sources));
-    primitive
-        .colors
-        .iter_mut()
-        .for_each(|values| pick(values, sources));
+    primitive.normals.iter_mut().for_each(|values| pick(values, sources));
+    primitive.texcoords.iter_mut().flatten().for_each(|values| pick(values, sources));
+    primitive.colors.iter_mut().for_each(|values| pick(values, sources));
     primitive.tangents = None;
 }
 
@@ -168,10 +130,7 @@ fn gather(primitive: &mut Primitive, sources: &[u32]) {
 fn face_normal(triangle: [[f32; 3]; 3]) -> Option<Vec3> {
     // In f64, since the product of two short edges underflows in f32.
     let [a, b, c] = triangle.map(|corner| Vec3::from(corner).as_dvec3());
-    (b - a)
-        .cross(c - a)
-        .try_normalize()
-        .map(|normal| normal.as_vec3())
+    (b - a).cross(c - a).try_normalize().map(|normal| normal.as_vec3())
 }
 
 struct Corners<'a> {
@@ -200,12 +159,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.primitive
-            .normals
-            .as_ref()
-            .map_or([0.0, 0.0, 1.0], |normals| {
-                normals[self.vertex(face, corner)]
-            })
+        self.primitive.normals.as_ref().map_or([0.0, 0.0, 1.0], |normals| normals[self.vertex(face, corner)])
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {

@@ -87,6 +87,7 @@ pub struct Scene {
     rest_poses: BTreeMap<NodeId, Pose>,
     pub(super) sky: [f32; 3],
     pub(super) revisions: Revisions,
+    identity: Identity,
     bounds: OnceLock<Option<Bounds>>,
 }
 
@@ -101,10 +102,7 @@ struct Placement {
 impl Scene {
     /// A scene without anything in it.
     pub fn empty(name: &str) -> Scene {
-        Scene {
-            name: name.to_owned(),
-            ..Scene::default()
-        }
+        Scene { name: name.to_owned(), ..Scene::default() }
     }
 
     /// A number that no other scene of this process has; clones differ from their originals.
@@ -164,9 +162,7 @@ impl Scene {
 
     /// Node space to world space. The identity for a node that does not exist.
     pub fn world_transform(&self, node: NodeId) -> DAffine3 {
-        self.placements
-            .get(node.0)
-            .map_or(DAffine3::IDENTITY, |placement| placement.world)
+        self.placements.get(node.0).map_or(DAffine3::IDENTITY, |placement| placement.world)
     }
 
     /// All placed punctual lights, in the order of nodes.
@@ -180,9 +176,7 @@ impl Scene {
                     node: NodeId(index),
                     light: id,
                     position: placement.world.translation,
-                    direction: (-placement.world.matrix3.z_axis)
-                        .try_normalize()
-                        .unwrap_or(DVec3::NEG_Z),
+                    direction: (-placement.world.matrix3.z_axis).try_normalize().unwrap_or(DVec3::NEG_Z),
                     kind: light.kind,
                     intensity: light.intensity,
                     range: light.range,
@@ -243,11 +237,7 @@ impl Scene {
             self.placements[parent.0].children.push(id);
         }
         self.nodes.push(node);
-        self.placements.push(Placement {
-            world,
-            children: Vec::new(),
-            instances: start..self.instances.len(),
-        });
+        self.placements.push(Placement { world, children: Vec::new(), instances: start..self.instances.len() });
         self.count_moved(&[id]);
         Ok(id)
     }
@@ -263,46 +253,25 @@ impl Scene {
     }
 
     fn move_nodes(&mut self, locals: &[(NodeId, DAffine3)]) -> Result<(), SceneError> {
-        let changed: Vec<_> = locals
-            .iter()
-            .copied()
-            .filter(|&(id, local)| self.nodes[id.0].local != local)
-            .collect();
+        let changed: Vec<_> = locals.iter().copied().filter(|&(id, local)| self.nodes[id.0].local != local).collect();
         let mut moved: Vec<NodeId> = changed.iter().map(|&(id, _)| id).collect();
         let mut seen: HashSet<NodeId> = moved.iter().copied().collect();
         let mut next = 0;
         while let Some(&id) = moved.get(next) {
-            moved.extend(
-                self.placements[id.0]
-                    .children
-                    .iter()
-                    .filter(|child| seen.insert(**child)),
-            );
+            moved.extend(self.placements[id.0].children.iter().filter(|child| seen.insert(**child)));
             next += 1;
         }
         moved.sort_unstable(); // parents first again
 
-        let worlds_before: Vec<DAffine3> =
-            moved.iter().map(|id| self.placements[id.0].world).collect();
-        let locals_before: Vec<DAffine3> = changed
-            .iter()
-            .map(|(id, _)| self.nodes[id.0].local)
-            .collect();
-        changed
-            .iter()
-            .for_each(|&(id, local)| self.nodes[id.0].local = local);
+        let worlds_before: Vec<DAffine3> = moved.iter().map(|id| self.placements[id.0].world).collect();
+        let locals_before: Vec<DAffine3> = changed.iter().map(|(id, _)| self.nodes[id.0].local).collect();
+        changed.iter().for_each(|&(id, local)| self.nodes[id.0].local = local);
         for id in &moved {
             match self.compose(&self.nodes[id.0]) {
                 Ok(world) => self.placements[id.0].world = world,
                 Err(error) => {
-                    changed
-                        .iter()
-                        .zip(locals_before)
-                        .for_each(|((id, _), local)| self.nodes[id.0].local = local);
-                    moved
-                        .iter()
-                        .zip(worlds_before)
-                        .for_each(|(id, world)| self.placements[id.0].world = world);
+                    changed.iter().zip(locals_before).for_each(|((id, _), local)| self.nodes[id.0].local = local);
+                    moved.iter().zip(worlds_before).for_each(|(id, world)| self.placements[id.0].world = world);
                     return Err(error);
                 }
             }
@@ -322,19 +291,12 @@ impl Scene {
     /// still. What an animation does not touch stays; an animated node's transform is that of the file but for what is animated.
     pub fn set_time(&mut self, seconds: f64) {
         let mut poses = self.rest_poses.clone();
-        for channel in self
-            .animations
-            .iter()
-            .flat_map(|animation| &animation.channels)
-        {
+        for channel in self.animations.iter().flat_map(|animation| &animation.channels) {
             if let Some(pose) = poses.get_mut(&channel.node) {
                 pose.apply(channel, seconds);
             }
         }
-        let locals: Vec<_> = poses
-            .iter()
-            .map(|(&node, pose)| (node, pose.transform()))
-            .collect();
+        let locals: Vec<_> = poses.iter().map(|(&node, pose)| (node, pose.transform())).collect();
         if let Err(error) = self.move_nodes(&locals) {
             tracing::warn!("the animation stands still at {seconds} s: {error}");
         }
@@ -355,9 +317,7 @@ impl Scene {
         }
         for channel in &animation.channels {
             let local = &self.nodes[channel.node.0].local;
-            self.rest_poses
-                .entry(channel.node)
-                .or_insert_with(|| Pose::of(local));
+            self.rest_poses.entry(channel.node).or_insert_with(|| Pose::of(local));
         }
         self.animations.push(animation);
         Ok(())
@@ -373,18 +333,14 @@ impl Scene {
     /// Counts the changes that moving, or adding, these nodes makes.
     fn count_moved(&mut self, moved: &[NodeId]) {
         let any = |test: &dyn Fn(&Node, &[Instance]) -> bool| {
-            let changed = moved.iter().any(|id| {
-                test(
-                    &self.nodes[id.0],
-                    &self.instances[self.placements[id.0].instances.clone()],
-                )
-            });
+            let changed = moved
+                .iter()
+                .any(|id| test(&self.nodes[id.0], &self.instances[self.placements[id.0].instances.clone()]));
             u64::from(changed)
         };
         let geometry = any(&|_, instances| !instances.is_empty());
-        let lights = any(&|node, instances| {
-            node.light.is_some() || instances.iter().any(|it| self.material_of(it).emits())
-        });
+        let lights =
+            any(&|node, instances| node.light.is_some() || instances.iter().any(|it| self.material_of(it).emits()));
         let camera = any(&|node, _| node.camera.is_some());
         self.revisions.geometry += geometry;
         self.revisions.lights += lights;
@@ -395,17 +351,11 @@ impl Scene {
     }
 
     fn compose(&self, node: &Node) -> Result<DAffine3, SceneError> {
-        let parent = node
-            .parent
-            .map_or(DAffine3::IDENTITY, |parent| self.placements[parent.0].world);
+        let parent = node.parent.map_or(DAffine3::IDENTITY, |parent| self.placements[parent.0].world);
         let world = parent * node.local;
         match world.is_finite() && node.local.is_finite() {
             true => Ok(world),
-            false => Err(self.invalid(
-                "node",
-                &node.name,
-                "its transform in the world is not finite".into(),
-            )),
+            false => Err(self.invalid("node", &node.name, "its transform in the world is not finite".into())),
         }
     }
 }

@@ -41,7 +41,9 @@ impl Device {
         let instance = Instance::new(options.validation)?;
         let (physical, survey) = choose(&instance, options.device.as_deref())?;
         let priorities = [1.0];
-        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(survey.queue_family).queue_priorities(&priorities)];
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(survey.queue_family)
+            .queue_priorities(&priorities)];
         let core = vk::PhysicalDeviceFeatures {
             geometry_shader: vk::TRUE,
             fragment_stores_and_atomics: vk::TRUE,
@@ -53,12 +55,24 @@ impl Device {
             sampler_anisotropy: survey.features.sampler_anisotropy,
             // GPU-assisted validation counts in vertex shaders and with 64-bit integers.
             vertex_pipeline_stores_and_atomics: survey.features.vertex_pipeline_stores_and_atomics,
-            shader_int64: if options.validation == Validation::GpuAssisted { survey.features.shader_int64 } else { vk::FALSE },
+            shader_int64: if options.validation == Validation::GpuAssisted {
+                survey.features.shader_int64
+            } else {
+                vk::FALSE
+            },
             ..Default::default()
         };
-        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).dynamic_rendering(true).maintenance4(true);
-        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
-        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&core).push_next(&mut vulkan13).push_next(&mut vulkan12);
+        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default()
+            .synchronization2(true)
+            .dynamic_rendering(true)
+            .maintenance4(true);
+        let mut vulkan12 =
+            vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&core)
+            .push_next(&mut vulkan13)
+            .push_next(&mut vulkan12);
         // SAFETY: the physical device belongs to the instance; the features were found present by the survey.
         let raw = unsafe { instance.raw.create_device(physical, &info, None) }.called("vkCreateDevice")?;
         // SAFETY: the family and its queue 0 were asked for above.
@@ -69,7 +83,11 @@ impl Device {
             device: raw.clone(),
             physical_device: physical,
             // Leaks are named by our own register, which also knows who is alive before shutdown.
-            debug_settings: { let mut settings = gpu_allocator::AllocatorDebugSettings::default(); settings.log_leaks_on_shutdown = false; settings },
+            debug_settings: {
+                let mut settings = gpu_allocator::AllocatorDebugSettings::default();
+                settings.log_leaks_on_shutdown = false;
+                settings
+            },
             buffer_device_address: false,
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         };
@@ -163,7 +181,11 @@ fn choose(instance: &Instance, asked: Option<&str>) -> Result<(vk::PhysicalDevic
     if surveys.is_empty() {
         return Err(VulkanError::NoDevice);
     }
-    let names = surveys.iter().map(|(_, survey)| format!("{} {}", survey.report.index, survey.report.name)).collect::<Vec<_>>().join(", ");
+    let names = surveys
+        .iter()
+        .map(|(_, survey)| format!("{} {}", survey.report.index, survey.report.name))
+        .collect::<Vec<_>>()
+        .join(", ");
     let unfit = |survey: &Survey| match &survey.report.unfit {
         Some(reason) => Err(VulkanError::Unfit { device: survey.report.name.clone(), reason: reason.clone() }),
         None => Ok(()),

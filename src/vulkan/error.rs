@@ -7,13 +7,17 @@ use ash::vk;
 #[non_exhaustive]
 pub enum VulkanError {
     /// The loader library is absent.
-    #[error("no Vulkan loader was found ({0}); install it (Debian, Ubuntu: apt install libvulkan1 mesa-vulkan-drivers)")]
+    #[error(
+        "no Vulkan loader was found ({0}); install it (Debian, Ubuntu: apt install libvulkan1 mesa-vulkan-drivers)"
+    )]
     NoLoader(String),
     /// The loader is older than Vulkan 1.3.
     #[error("the Vulkan loader offers version {0}; irradia needs 1.3: install a newer libvulkan1")]
     OldLoader(String),
     /// The loader found no device at all.
-    #[error("no Vulkan device was found; install a driver (Debian, Ubuntu: apt install mesa-vulkan-drivers, which also renders without a GPU)")]
+    #[error(
+        "no Vulkan device was found; install a driver (Debian, Ubuntu: apt install mesa-vulkan-drivers, which also renders without a GPU)"
+    )]
     NoDevice,
     /// No device matches `--device`.
     #[error("no Vulkan device matches {asked:?}; devices: {known}")]
@@ -32,16 +36,22 @@ pub enum VulkanError {
         reason: String,
     },
     /// Validation was asked for, but its layer is absent.
-    #[error("validation was asked for, but the layer VK_LAYER_KHRONOS_validation is absent; install it (Debian, Ubuntu: apt install vulkan-validationlayers)")]
+    #[error(
+        "validation was asked for, but the layer VK_LAYER_KHRONOS_validation is absent; install it (Debian, Ubuntu: apt install vulkan-validationlayers)"
+    )]
     NoValidationLayer,
     /// The device stopped answering.
-    #[error("the device was lost; the last pass that finished is {last_pass}: reduce the work of the one after it, or update the driver")]
+    #[error(
+        "the device was lost; the last pass that finished is {last_pass}: reduce the work of the one after it, or update the driver"
+    )]
     DeviceLost {
         /// The last pass known to have finished.
         last_pass: String,
     },
     /// The device has no memory left.
-    #[error("the device has no memory left for {what} ({mib:.1} MiB); last pass that finished: {last_pass}; reduce the frame's size or the piece's settings")]
+    #[error(
+        "the device has no memory left for {what} ({mib:.1} MiB); last pass that finished: {last_pass}; reduce the frame's size or the piece's settings"
+    )]
     OutOfMemory {
         /// The allocation that failed.
         what: String,
@@ -51,7 +61,9 @@ pub enum VulkanError {
         last_pass: String,
     },
     /// A resource is larger than the device allows.
-    #[error("{what} is larger than the device allows: {asked}, the limit is {limit}; reduce the frame's size or the piece's settings")]
+    #[error(
+        "{what} is larger than the device allows: {asked}, the limit is {limit}; reduce the frame's size or the piece's settings"
+    )]
     TooLarge {
         /// The resource.
         what: String,
@@ -95,7 +107,9 @@ impl VulkanError {
         let Some(pass) = pass else { return self };
         match self {
             VulkanError::DeviceLost { .. } => VulkanError::DeviceLost { last_pass: pass.to_owned() },
-            VulkanError::OutOfMemory { what, mib, .. } => VulkanError::OutOfMemory { what, mib, last_pass: pass.to_owned() },
+            VulkanError::OutOfMemory { what, mib, .. } => {
+                VulkanError::OutOfMemory { what, mib, last_pass: pass.to_owned() }
+            }
             other => other,
         }
     }
@@ -112,6 +126,9 @@ mod tests {
         assert!(error.to_string().contains("last pass that finished is rsm/gather"), "{error}");
         let memory: Result<(), _> = Err(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
         let error = memory.called("light_views.flux").expect_err("it is an error").after_pass(Some("gbuffer/plain"));
-        assert!(error.to_string().contains("light_views.flux") && error.to_string().contains("gbuffer/plain"), "{error}");
+        assert!(
+            error.to_string().contains("light_views.flux") && error.to_string().contains("gbuffer/plain"),
+            "{error}"
+        );
     }
 }

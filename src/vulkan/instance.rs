@@ -44,12 +44,15 @@ impl Instance {
         // SAFETY: the loader is the system's Vulkan library; its initialisers have no precondition.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| VulkanError::NoLoader(error.to_string()))?;
         // SAFETY: the entry is loaded.
-        let version = unsafe { entry.try_enumerate_instance_version() }.called("vkEnumerateInstanceVersion")?.unwrap_or(vk::API_VERSION_1_0);
+        let version = unsafe { entry.try_enumerate_instance_version() }
+            .called("vkEnumerateInstanceVersion")?
+            .unwrap_or(vk::API_VERSION_1_0);
         if version < vk::API_VERSION_1_3 {
             return Err(VulkanError::OldLoader(version_text(version)));
         }
         // SAFETY: the entry is loaded; no layer is named.
-        let available = unsafe { entry.enumerate_instance_extension_properties(None) }.called("vkEnumerateInstanceExtensionProperties")?;
+        let available = unsafe { entry.enumerate_instance_extension_properties(None) }
+            .called("vkEnumerateInstanceExtensionProperties")?;
         let has = |wanted: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(wanted));
         let layers = if validation == Validation::Off { vec![] } else { vec![validation_layer(&entry)?.as_ptr()] };
         // Drivers and the validation layer both offer debug labels; without them frames lack names, nothing else.
@@ -58,17 +61,25 @@ impl Instance {
         if debug {
             extensions.push(ext::debug_utils::NAME.as_ptr());
         }
-        let application = vk::ApplicationInfo::default().application_name(c"irradia").engine_name(c"irradia").api_version(vk::API_VERSION_1_3);
+        let application = vk::ApplicationInfo::default()
+            .application_name(c"irradia")
+            .engine_name(c"irradia")
+            .api_version(vk::API_VERSION_1_3);
         let enabled = match validation {
             Validation::Synchronization => vec![vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION],
             Validation::GpuAssisted => {
-                vec![vk::ValidationFeatureEnableEXT::GPU_ASSISTED, vk::ValidationFeatureEnableEXT::GPU_ASSISTED_RESERVE_BINDING_SLOT]
+                vec![
+                    vk::ValidationFeatureEnableEXT::GPU_ASSISTED,
+                    vk::ValidationFeatureEnableEXT::GPU_ASSISTED_RESERVE_BINDING_SLOT,
+                ]
             }
             Validation::Off | Validation::Core => vec![],
         };
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
-        let mut info =
-            vk::InstanceCreateInfo::default().application_info(&application).enabled_extension_names(&extensions).enabled_layer_names(&layers);
+        let mut info = vk::InstanceCreateInfo::default()
+            .application_info(&application)
+            .enabled_extension_names(&extensions)
+            .enabled_layer_names(&layers);
         if validation != Validation::Off {
             info = info.push_next(&mut features);
         }
@@ -95,7 +106,8 @@ impl Instance {
             .pfn_user_callback(Some(on_message))
             .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
         // SAFETY: the user data is owned by `self` and outlives the messenger, which `drop` destroys first.
-        let messenger = unsafe { functions.create_debug_utils_messenger(&info, None) }.called("vkCreateDebugUtilsMessengerEXT")?;
+        let messenger =
+            unsafe { functions.create_debug_utils_messenger(&info, None) }.called("vkCreateDebugUtilsMessengerEXT")?;
         self.messenger = Some((functions, messenger));
         Ok(())
     }
@@ -145,10 +157,20 @@ unsafe extern "system" fn on_message(
     // SAFETY: `user` is the `Mutex` inside `Instance::messages`, alive as long as the messenger.
     let messages = unsafe { &*user.cast::<Mutex<Vec<String>>>() };
     // SAFETY: the layer passes valid data, its message a string that ends in zero, or null.
-    let text = unsafe { data.as_ref().and_then(|data| data.message_as_c_str()) }.map(CStr::to_string_lossy).unwrap_or_default();
+    let text = unsafe { data.as_ref().and_then(|data| data.message_as_c_str()) }
+        .map(CStr::to_string_lossy)
+        .unwrap_or_default();
     // GPU-assisted validation announces what it reserves and which features it turns on; that is no finding.
-    let announcement = ["reserved a descriptor", "Forcing vertexPipelineStoresAndAtomics", "Forcing fragmentStoresAndAtomics", "Forcing shaderInt64"];
-    if !text.contains("WARNING-Setting") && !announcement.iter().any(|part| text.contains(part)) {
+    let announcement = [
+        "reserved a descriptor",
+        "Forcing vertexPipelineStoresAndAtomics",
+        "Forcing fragmentStoresAndAtomics",
+        "Forcing shaderInt64",
+    ];
+    // An output without an attachment is discarded (KhronosGroup/Vulkan-Docs#2125), and its write mask is 0 here besides;
+    // the layer compares its type with that of the absent attachment all the same.
+    let absent_attachment = text.contains("Shader-InterfaceTypeMismatch") && text.contains("VK_FORMAT_UNDEFINED");
+    if !absent_attachment && !text.contains("WARNING-Setting") && !announcement.iter().any(|part| text.contains(part)) {
         tracing::warn!("validation: {text}");
         messages.lock().unwrap_or_else(PoisonError::into_inner).push(text.into_owned());
     }

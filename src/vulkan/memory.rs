@@ -43,15 +43,30 @@ struct Memory {
 }
 
 impl Memory {
-    fn new(device: &Arc<Device>, name: &str, requirements: vk::MemoryRequirements, location: Location, linear: bool) -> Result<Memory, VulkanError> {
-        let description =
-            AllocationCreateDesc { name, requirements, location: location.memory(), linear, allocation_scheme: AllocationScheme::GpuAllocatorManaged };
+    fn new(
+        device: &Arc<Device>,
+        name: &str,
+        requirements: vk::MemoryRequirements,
+        location: Location,
+        linear: bool,
+    ) -> Result<Memory, VulkanError> {
+        let description = AllocationCreateDesc {
+            name,
+            requirements,
+            location: location.memory(),
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
         let allocation = device.allocator().allocate(&description).map_err(|error| {
             tracing::debug!("gpu-allocator: {error}");
             let mib = requirements.size as f64 / f64::from(1 << 20);
             VulkanError::OutOfMemory { what: name.to_owned(), mib, last_pass: "none of this frame".to_owned() }
         })?;
-        Ok(Memory { device: device.clone(), id: device.register(name, requirements.size), allocation: Some(allocation) })
+        Ok(Memory {
+            device: device.clone(),
+            id: device.register(name, requirements.size),
+            allocation: Some(allocation),
+        })
     }
 
     fn allocation(&self) -> &Allocation {
@@ -81,7 +96,13 @@ pub(crate) struct Buffer {
 
 impl Buffer {
     /// A buffer of `size` bytes (at least 4, so that empty lists can be bound too).
-    pub(crate) fn new(device: &Arc<Device>, name: &str, size: u64, usage: vk::BufferUsageFlags, location: Location) -> Result<Buffer, VulkanError> {
+    pub(crate) fn new(
+        device: &Arc<Device>,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+        location: Location,
+    ) -> Result<Buffer, VulkanError> {
         let size = size.max(4).next_multiple_of(4);
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
@@ -91,7 +112,8 @@ impl Buffer {
         let bound = Memory::new(device, name, requirements, location, true).and_then(|memory| {
             let allocation = memory.allocation();
             // SAFETY: the memory meets the buffer's requirements and nothing is bound yet.
-            unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }.called(&format!("vkBindBufferMemory for {name}"))?;
+            unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+                .called(&format!("vkBindBufferMemory for {name}"))?;
             Ok(memory)
         });
         match bound {
@@ -134,11 +156,16 @@ impl Buffer {
         let elements = self.size / texel_bytes(format);
         let limit = u64::from(device.limits().max_texel_buffer_elements);
         if elements > limit {
-            return Err(VulkanError::TooLarge { what: self.name.clone(), asked: format!("{elements} texels"), limit: limit.to_string() });
+            return Err(VulkanError::TooLarge {
+                what: self.name.clone(),
+                asked: format!("{elements} texels"),
+                limit: limit.to_string(),
+            });
         }
         let info = vk::BufferViewCreateInfo::default().buffer(self.raw).format(format).range(vk::WHOLE_SIZE);
         // SAFETY: the buffer is alive and was made for texel use.
-        let view = unsafe { device.raw.create_buffer_view(&info, None) }.called(&format!("vkCreateBufferView for {}", self.name))?;
+        let view = unsafe { device.raw.create_buffer_view(&info, None) }
+            .called(&format!("vkCreateBufferView for {}", self.name))?;
         views.insert(format, view);
         Ok(view)
     }
@@ -201,7 +228,13 @@ pub(crate) struct Image {
 }
 
 impl Image {
-    pub(crate) fn new(device: &Arc<Device>, name: &str, info: ImageInfo, usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags) -> Result<Image, VulkanError> {
+    pub(crate) fn new(
+        device: &Arc<Device>,
+        name: &str,
+        info: ImageInfo,
+        usage: vk::ImageUsageFlags,
+        flags: vk::ImageCreateFlags,
+    ) -> Result<Image, VulkanError> {
         check_size(device, name, &info)?;
         let [width, height, depth] = info.extent;
         let kind = if info.volume { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D };
@@ -223,7 +256,8 @@ impl Image {
         let bound = Memory::new(device, name, requirements, Location::Device, false).and_then(|memory| {
             let allocation = memory.allocation();
             // SAFETY: the memory meets the image's requirements and nothing is bound yet.
-            unsafe { device.raw.bind_image_memory(raw, allocation.memory(), allocation.offset()) }.called(&format!("vkBindImageMemory for {name}"))?;
+            unsafe { device.raw.bind_image_memory(raw, allocation.memory(), allocation.offset()) }
+                .called(&format!("vkBindImageMemory for {name}"))?;
             Ok(memory)
         });
         match bound {
@@ -257,9 +291,14 @@ impl Image {
             base_array_layer: 0,
             layer_count: self.info.layers,
         };
-        let info = vk::ImageViewCreateInfo::default().image(self.raw).view_type(what.dim.view_type()).format(what.format).subresource_range(range);
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.raw)
+            .view_type(what.dim.view_type())
+            .format(what.format)
+            .subresource_range(range);
         // SAFETY: the image is alive and the range lies within it.
-        let view = unsafe { device.raw.create_image_view(&info, None) }.called(&format!("vkCreateImageView for {}", self.name))?;
+        let view = unsafe { device.raw.create_image_view(&info, None) }
+            .called(&format!("vkCreateImageView for {}", self.name))?;
         device.set_name(view, &self.name);
         views.insert(what.clone(), view);
         Ok(view)
@@ -282,7 +321,9 @@ impl Drop for Image {
 fn check_size(device: &Device, name: &str, info: &ImageInfo) -> Result<(), VulkanError> {
     let limits = device.limits();
     let side = if info.volume { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
-    let too_large = |asked: String, limit: u32| Err(VulkanError::TooLarge { what: name.to_owned(), asked, limit: limit.to_string() });
+    let too_large = |asked: String, limit: u32| {
+        Err(VulkanError::TooLarge { what: name.to_owned(), asked, limit: limit.to_string() })
+    };
     if info.extent.iter().any(|&length| length > side) {
         return too_large(format!("{}x{}x{} texels", info.extent[0], info.extent[1], info.extent[2]), side);
     }

@@ -21,7 +21,10 @@ pub(crate) enum SamplerKind {
     NearestClamp,
     LinearClamp,
     /// A texture of the scene.
-    Texture { wrap: [vk::SamplerAddressMode; 2], nearest: bool },
+    Texture {
+        wrap: [vk::SamplerAddressMode; 2],
+        nearest: bool,
+    },
 }
 
 /// One attribute of a vertex: the shader's location, and where its data lie.
@@ -106,7 +109,13 @@ pub(crate) struct Pipelines {
 
 impl Pipelines {
     pub(crate) fn new(device: &Arc<Device>) -> Pipelines {
-        Pipelines { device: device.clone(), layouts: Mutex::default(), pipelines: Mutex::default(), samplers: Mutex::default(), spent: Mutex::default() }
+        Pipelines {
+            device: device.clone(),
+            layouts: Mutex::default(),
+            pipelines: Mutex::default(),
+            samplers: Mutex::default(),
+            spent: Mutex::default(),
+        }
     }
 
     /// Time spent creating pipelines since this was last asked.
@@ -118,11 +127,22 @@ impl Pipelines {
         self.pipeline(program, constants, None)
     }
 
-    pub(crate) fn raster(&self, program: &'static Program, constants: &[u32], state: &RasterState, targets: &TargetFormats) -> Result<Pipeline, VulkanError> {
+    pub(crate) fn raster(
+        &self,
+        program: &'static Program,
+        constants: &[u32],
+        state: &RasterState,
+        targets: &TargetFormats,
+    ) -> Result<Pipeline, VulkanError> {
         self.pipeline(program, constants, Some((state.clone(), targets.clone())))
     }
 
-    fn pipeline(&self, program: &'static Program, constants: &[u32], raster: Option<(RasterState, TargetFormats)>) -> Result<Pipeline, VulkanError> {
+    fn pipeline(
+        &self,
+        program: &'static Program,
+        constants: &[u32],
+        raster: Option<(RasterState, TargetFormats)>,
+    ) -> Result<Pipeline, VulkanError> {
         let key = Key { program: program.name, constants: constants.to_vec(), raster };
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&key) {
@@ -132,14 +152,19 @@ impl Pipelines {
         let layouts = self.layouts(program)?;
         let raw = self.create(program, constants, layouts.pipeline, key.raster.as_ref())?;
         self.device.set_name(raw, program.name);
-        let bind_point = if program.is_compute() { vk::PipelineBindPoint::COMPUTE } else { vk::PipelineBindPoint::GRAPHICS };
+        let bind_point =
+            if program.is_compute() { vk::PipelineBindPoint::COMPUTE } else { vk::PipelineBindPoint::GRAPHICS };
         let pipeline = Pipeline { raw, layout: layouts.pipeline, bind_point, stages: program.stage_flags() };
         pipelines.insert(key, pipeline);
         *self.spent.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed();
         Ok(pipeline)
     }
 
-    pub(crate) fn set_layout(&self, program: &'static Program, set: u32) -> Result<vk::DescriptorSetLayout, VulkanError> {
+    pub(crate) fn set_layout(
+        &self,
+        program: &'static Program,
+        set: u32,
+    ) -> Result<vk::DescriptorSetLayout, VulkanError> {
         Ok(self.layouts(program)?.sets[set as usize])
     }
 
@@ -152,15 +177,25 @@ impl Pipelines {
         let stages = program.stage_flags();
         let mut sets = [vk::DescriptorSetLayout::null(); 2];
         for (set, place) in (0..).zip(&mut sets) {
-            let declared = program.bindings.iter().filter(|binding| binding.set == set).map(|binding| (binding.binding, binding.kind));
+            let declared = program
+                .bindings
+                .iter()
+                .filter(|binding| binding.set == set)
+                .map(|binding| (binding.binding, binding.kind));
             // One set per material fits every program, also one that reads but some of the textures.
-            let textures = (0..MATERIAL_TEXTURES).map(|binding| (binding, BindingKind::SampledImage(ImageDim::D2Array)));
-            let bindings: Vec<(u32, BindingKind)> = if set == 1 && program.has_set(1) { textures.collect() } else { declared.collect() };
+            let textures =
+                (0..MATERIAL_TEXTURES).map(|binding| (binding, BindingKind::SampledImage(ImageDim::D2Array)));
+            let bindings: Vec<(u32, BindingKind)> =
+                if set == 1 && program.has_set(1) { textures.collect() } else { declared.collect() };
             let bindings: Vec<_> = bindings
                 .into_iter()
                 .map(|(binding, kind)| {
                     let layout = vk::DescriptorSetLayoutBinding::default();
-                    layout.binding(binding).descriptor_type(kind.descriptor_type()).descriptor_count(1).stage_flags(stages)
+                    layout
+                        .binding(binding)
+                        .descriptor_type(kind.descriptor_type())
+                        .descriptor_count(1)
+                        .stage_flags(stages)
                 })
                 .collect();
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
@@ -185,17 +220,23 @@ impl Pipelines {
         raster: Option<&(RasterState, TargetFormats)>,
     ) -> Result<vk::Pipeline, VulkanError> {
         let raw = &self.device.raw;
-        let entries: Vec<_> = (0..).zip(program.constants).map(|(index, &id)| vk::SpecializationMapEntry { constant_id: id, offset: index * 4, size: 4 }).collect();
-        let specialisation = vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(constants));
+        let entries: Vec<_> = (0..)
+            .zip(program.constants)
+            .map(|(index, &id)| vk::SpecializationMapEntry { constant_id: id, offset: index * 4, size: 4 })
+            .collect();
+        let specialisation =
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(constants));
         let mut modules = Vec::new();
         let mut stages = Vec::new();
         for stage in program.stages {
             let words = stage.spirv.words();
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
             // SAFETY: the code is glslang's, for this version of Vulkan.
-            let module = unsafe { raw.create_shader_module(&info, None) }.called(&format!("vkCreateShaderModule for {}", program.name))?;
+            let module = unsafe { raw.create_shader_module(&info, None) }
+                .called(&format!("vkCreateShaderModule for {}", program.name))?;
             modules.push(module);
-            let info = vk::PipelineShaderStageCreateInfo::default().stage(stage.kind.flag()).module(module).name(c"main");
+            let info =
+                vk::PipelineShaderStageCreateInfo::default().stage(stage.kind.flag()).module(module).name(c"main");
             stages.push(info.specialization_info(&specialisation));
         }
         let result = match raster {
@@ -223,15 +264,26 @@ impl Pipelines {
     ) -> Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)> {
         let bindings: Vec<_> = (0..)
             .zip(&state.vertices.strides)
-            .map(|(binding, &stride)| vk::VertexInputBindingDescription { binding, stride, input_rate: vk::VertexInputRate::VERTEX })
+            .map(|(binding, &stride)| vk::VertexInputBindingDescription {
+                binding,
+                stride,
+                input_rate: vk::VertexInputRate::VERTEX,
+            })
             .collect();
         let attributes: Vec<_> = state
             .vertices
             .attributes
             .iter()
-            .map(|attribute| vk::VertexInputAttributeDescription { location: attribute.location, binding: attribute.buffer, format: attribute.format, offset: 0 })
+            .map(|attribute| vk::VertexInputAttributeDescription {
+                location: attribute.location,
+                binding: attribute.buffer,
+                format: attribute.format,
+                offset: 0,
+            })
             .collect();
-        let vertices = vk::PipelineVertexInputStateCreateInfo::default().vertex_binding_descriptions(&bindings).vertex_attribute_descriptions(&attributes);
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&bindings)
+            .vertex_attribute_descriptions(&attributes);
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(state.topology);
         let viewports = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
@@ -239,7 +291,8 @@ impl Pipelines {
             .cull_mode(vk::CullModeFlags::NONE)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
-        let samples = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let samples =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let stencil = state.stencil.map_or_else(vk::StencilOpState::default, |stencil| vk::StencilOpState {
             fail_op: vk::StencilOp::KEEP,
             pass_op: stencil.pass,
@@ -266,7 +319,12 @@ impl Pipelines {
             alpha_blend_op: vk::BlendOp::ADD,
             color_write_mask: vk::ColorComponentFlags::RGBA,
         };
-        let blends = vec![blend; targets.colors.len()];
+        let unwritten = vk::PipelineColorBlendAttachmentState::default();
+        let blends: Vec<_> = targets
+            .colors
+            .iter()
+            .map(|format| if *format == vk::Format::UNDEFINED { unwritten } else { blend })
+            .collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
@@ -298,11 +356,17 @@ impl Pipelines {
         let (filter, [u, v]) = match kind {
             SamplerKind::NearestClamp => (vk::Filter::NEAREST, [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2]),
             SamplerKind::LinearClamp => (vk::Filter::LINEAR, [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2]),
-            SamplerKind::Texture { wrap, nearest } => (if nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR }, wrap),
+            SamplerKind::Texture { wrap, nearest } => {
+                (if nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR }, wrap)
+            }
         };
         let texture = matches!(kind, SamplerKind::Texture { .. });
-        let anisotropic = texture && filter == vk::Filter::LINEAR && self.device.survey.features.sampler_anisotropy == vk::TRUE && !self.device.is_cpu();
-        let mode = if filter == vk::Filter::NEAREST { vk::SamplerMipmapMode::NEAREST } else { vk::SamplerMipmapMode::LINEAR };
+        let anisotropic = texture
+            && filter == vk::Filter::LINEAR
+            && self.device.survey.features.sampler_anisotropy == vk::TRUE
+            && !self.device.is_cpu();
+        let mode =
+            if filter == vk::Filter::NEAREST { vk::SamplerMipmapMode::NEAREST } else { vk::SamplerMipmapMode::LINEAR };
         let info = vk::SamplerCreateInfo::default()
             .mag_filter(filter)
             .min_filter(filter)

@@ -29,14 +29,17 @@ impl Queries {
     pub(crate) fn new(device: &Arc<Device>, capacity: u32) -> Result<Queries, VulkanError> {
         let info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(capacity);
         // SAFETY: the device is alive.
-        let timestamps = unsafe { device.raw.create_query_pool(&info, None) }.called("vkCreateQueryPool for timestamps")?;
+        let timestamps =
+            unsafe { device.raw.create_query_pool(&info, None) }.called("vkCreateQueryPool for timestamps")?;
         let mut queries = Queries { device: device.clone(), timestamps, statistics: None, capacity };
         if device.survey.features.pipeline_statistics_query == vk::TRUE {
             use vk::QueryPipelineStatisticFlags as Flags;
-            let flags = Flags::VERTEX_SHADER_INVOCATIONS | Flags::CLIPPING_INVOCATIONS | Flags::FRAGMENT_SHADER_INVOCATIONS;
+            let flags =
+                Flags::VERTEX_SHADER_INVOCATIONS | Flags::CLIPPING_INVOCATIONS | Flags::FRAGMENT_SHADER_INVOCATIONS;
             let info = info.query_type(vk::QueryType::PIPELINE_STATISTICS).pipeline_statistics(flags);
             // SAFETY: the device is alive and has the feature.
-            let pool = unsafe { device.raw.create_query_pool(&info, None) }.called("vkCreateQueryPool for statistics")?;
+            let pool =
+                unsafe { device.raw.create_query_pool(&info, None) }.called("vkCreateQueryPool for statistics")?;
             queries.statistics = Some(pool);
         }
         Ok(queries)

@@ -37,7 +37,9 @@ impl Scope {
         from_stages: vk::PipelineStageFlags2::ALL_COMMANDS,
         from_access: vk::AccessFlags2::MEMORY_WRITE,
         to_stages: vk::PipelineStageFlags2::ALL_COMMANDS,
-        to_access: vk::AccessFlags2::from_raw(vk::AccessFlags2::MEMORY_READ.as_raw() | vk::AccessFlags2::MEMORY_WRITE.as_raw()),
+        to_access: vk::AccessFlags2::from_raw(
+            vk::AccessFlags2::MEMORY_READ.as_raw() | vk::AccessFlags2::MEMORY_WRITE.as_raw(),
+        ),
     };
 }
 
@@ -131,7 +133,8 @@ impl Recorder {
                 self.descriptors = raw.create_descriptor_pool(&info, None).called("vkCreateDescriptorPool")?;
                 self.capacity = capacity;
             } else if self.capacity > 0 {
-                raw.reset_descriptor_pool(self.descriptors, vk::DescriptorPoolResetFlags::empty()).called("vkResetDescriptorPool")?;
+                raw.reset_descriptor_pool(self.descriptors, vk::DescriptorPoolResetFlags::empty())
+                    .called("vkResetDescriptorPool")?;
             }
             let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
             raw.begin_command_buffer(self.commands, &info).called("vkBeginCommandBuffer")
@@ -175,7 +178,8 @@ impl Recorder {
             .memory
             .iter()
             .map(|scope| {
-                let barrier = vk::MemoryBarrier2::default().src_stage_mask(scope.from_stages).src_access_mask(scope.from_access);
+                let barrier =
+                    vk::MemoryBarrier2::default().src_stage_mask(scope.from_stages).src_access_mask(scope.from_access);
                 barrier.dst_stage_mask(scope.to_stages).dst_access_mask(scope.to_access)
             })
             .collect();
@@ -214,7 +218,14 @@ impl Recorder {
     /// separate passes (the software driver bins it with the raster work that follows otherwise).
     pub(crate) fn timestamp(&self, queries: &Queries, index: u32) {
         // SAFETY: the command buffer is recording; the index is below the pool's capacity, which the graph checks.
-        unsafe { self.device.raw.cmd_write_timestamp2(self.commands, vk::PipelineStageFlags2::ALL_COMMANDS, queries.timestamps, index) };
+        unsafe {
+            self.device.raw.cmd_write_timestamp2(
+                self.commands,
+                vk::PipelineStageFlags2::ALL_COMMANDS,
+                queries.timestamps,
+                index,
+            )
+        };
     }
 
     pub(crate) fn begin_statistics(&self, queries: &Queries, index: u32) {
@@ -232,7 +243,11 @@ impl Recorder {
     }
 
     /// A descriptor set of this recording.
-    pub(crate) fn descriptor_set(&self, layout: vk::DescriptorSetLayout, bindings: &[(u32, BindingKind, Descriptor)]) -> Result<vk::DescriptorSet, VulkanError> {
+    pub(crate) fn descriptor_set(
+        &self,
+        layout: vk::DescriptorSetLayout,
+        bindings: &[(u32, BindingKind, Descriptor)],
+    ) -> Result<vk::DescriptorSet, VulkanError> {
         write_descriptor_set(&self.device, self.descriptors, layout, bindings)
     }
 
@@ -243,7 +258,16 @@ impl Recorder {
 
     pub(crate) fn bind_set(&self, pipeline: Pipeline, number: u32, set: vk::DescriptorSet) {
         // SAFETY: as above; the set was made for this pipeline's layout.
-        unsafe { self.device.raw.cmd_bind_descriptor_sets(self.commands, pipeline.bind_point, pipeline.layout, number, &[set], &[]) };
+        unsafe {
+            self.device.raw.cmd_bind_descriptor_sets(
+                self.commands,
+                pipeline.bind_point,
+                pipeline.layout,
+                number,
+                &[set],
+                &[],
+            )
+        };
     }
 
     pub(crate) fn push_constants(&self, pipeline: Pipeline, bytes: &[u8]) {
@@ -265,12 +289,18 @@ impl Recorder {
 
     pub(crate) fn begin_rendering(&self, attachments: &Attachments) {
         let convert = |attachment: &Attachment| {
-            let load = if attachment.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+            let load =
+                if attachment.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
             let store = if attachment.store { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE };
-            let info = vk::RenderingAttachmentInfo::default().image_view(attachment.view).image_layout(attachment.layout);
+            let info =
+                vk::RenderingAttachmentInfo::default().image_view(attachment.view).image_layout(attachment.layout);
             info.load_op(load).store_op(store).clear_value(attachment.clear.unwrap_or_default())
         };
-        let colors: Vec<_> = attachments.colors.iter().map(|color| color.as_ref().map_or_else(vk::RenderingAttachmentInfo::default, convert)).collect();
+        let colors: Vec<_> = attachments
+            .colors
+            .iter()
+            .map(|color| color.as_ref().map_or_else(vk::RenderingAttachmentInfo::default, convert))
+            .collect();
         let (depth, stencil) = (attachments.depth.as_ref().map(convert), attachments.stencil.as_ref().map(convert));
         let [width, height] = attachments.extent;
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
@@ -353,14 +383,30 @@ impl Recorder {
             layer_count: vk::REMAINING_ARRAY_LAYERS,
         };
         // SAFETY: as above; the image is in the transfer layout.
-        unsafe { self.device.raw.cmd_clear_color_image(self.commands, image.raw, vk::ImageLayout::TRANSFER_DST_OPTIMAL, &value, &[range]) };
+        unsafe {
+            self.device.raw.cmd_clear_color_image(
+                self.commands,
+                image.raw,
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &value,
+                &[range],
+            )
+        };
     }
 
     /// Copies mip level 0 of every layer to `buffer`, rows close together.
     pub(crate) fn read_image(&self, image: &Image, buffer: &Buffer, offset: u64) {
         let regions = [copy_region(image, 0, 0, image.info.layers, offset)];
         // SAFETY: as above; the image is in the transfer layout; the buffer is large enough.
-        unsafe { self.device.raw.cmd_copy_image_to_buffer(self.commands, image.raw, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, buffer.raw, &regions) };
+        unsafe {
+            self.device.raw.cmd_copy_image_to_buffer(
+                self.commands,
+                image.raw,
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                buffer.raw,
+                &regions,
+            )
+        };
     }
 
     /// Makes mip level `mip` from the one above it, averaging texels; sRGB texels are averaged as light.
@@ -375,17 +421,32 @@ impl Recorder {
             let [width, height, _] = image.info.extent.map(|length| i32::try_from((length >> mip).max(1)).unwrap_or(1));
             [vk::Offset3D::default(), vk::Offset3D { x: width, y: height, z: 1 }]
         };
-        let regions = [vk::ImageBlit { src_subresource: layers(mip - 1), src_offsets: corner(mip - 1), dst_subresource: layers(mip), dst_offsets: corner(mip) }];
+        let regions = [vk::ImageBlit {
+            src_subresource: layers(mip - 1),
+            src_offsets: corner(mip - 1),
+            dst_subresource: layers(mip),
+            dst_offsets: corner(mip),
+        }];
         let (from, to) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
         // SAFETY: the command buffer is recording; the levels are in the transfer layouts.
-        unsafe { self.device.raw.cmd_blit_image(self.commands, image.raw, from, image.raw, to, &regions, vk::Filter::LINEAR) };
+        unsafe {
+            self.device.raw.cmd_blit_image(self.commands, image.raw, from, image.raw, to, &regions, vk::Filter::LINEAR)
+        };
     }
 
     /// Copies `buffer` at `offset` to one layer of one mip level.
     pub(crate) fn write_image(&self, buffer: &Buffer, offset: u64, image: &Image, mip: u32, layer: u32) {
         let regions = [copy_region(image, mip, layer, 1, offset)];
         // SAFETY: as above.
-        unsafe { self.device.raw.cmd_copy_buffer_to_image(self.commands, buffer.raw, image.raw, vk::ImageLayout::TRANSFER_DST_OPTIMAL, &regions) };
+        unsafe {
+            self.device.raw.cmd_copy_buffer_to_image(
+                self.commands,
+                buffer.raw,
+                image.raw,
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &regions,
+            )
+        };
     }
 }
 
@@ -394,7 +455,12 @@ fn copy_region(image: &Image, mip: u32, layer: u32, layer_count: u32, offset: u6
     let [width, height, depth] = image.info.extent.map(|length| (length >> mip).max(1));
     vk::BufferImageCopy::default()
         .buffer_offset(offset)
-        .image_subresource(vk::ImageSubresourceLayers { aspect_mask: aspect, mip_level: mip, base_array_layer: layer, layer_count })
+        .image_subresource(vk::ImageSubresourceLayers {
+            aspect_mask: aspect,
+            mip_level: mip,
+            base_array_layer: layer,
+            layer_count,
+        })
         .image_extent(vk::Extent3D { width, height, depth })
 }
 
@@ -416,16 +482,24 @@ fn write_descriptor_set(
     let infos: Vec<Info> = bindings
         .iter()
         .map(|(_, _, descriptor)| match *descriptor {
-            Descriptor::Image { view, layout, sampler } => Info::Image([vk::DescriptorImageInfo { sampler, image_view: view, image_layout: layout }]),
+            Descriptor::Image { view, layout, sampler } => {
+                Info::Image([vk::DescriptorImageInfo { sampler, image_view: view, image_layout: layout }])
+            }
             Descriptor::Texels(view) => Info::Texels([view]),
-            Descriptor::Buffer(buffer) => Info::Buffer([vk::DescriptorBufferInfo { buffer, offset: 0, range: vk::WHOLE_SIZE }]),
+            Descriptor::Buffer(buffer) => {
+                Info::Buffer([vk::DescriptorBufferInfo { buffer, offset: 0, range: vk::WHOLE_SIZE }])
+            }
         })
         .collect();
     let writes: Vec<_> = bindings
         .iter()
         .zip(&infos)
         .map(|((binding, kind, _), info)| {
-            let write = vk::WriteDescriptorSet::default().dst_set(set).dst_binding(*binding).descriptor_count(1).descriptor_type(kind.descriptor_type());
+            let write = vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(*binding)
+                .descriptor_count(1)
+                .descriptor_type(kind.descriptor_type());
             match info {
                 Info::Image(info) => write.image_info(info),
                 Info::Texels(views) => write.texel_buffer_view(views),
@@ -459,12 +533,18 @@ pub(crate) struct MaterialSets {
 
 impl MaterialSets {
     /// One set for each element of `materials`, all with `layout`.
-    pub(crate) fn new(device: &Arc<Device>, layout: vk::DescriptorSetLayout, materials: &[Vec<(u32, BindingKind, Descriptor)>]) -> Result<MaterialSets, VulkanError> {
+    pub(crate) fn new(
+        device: &Arc<Device>,
+        layout: vk::DescriptorSetLayout,
+        materials: &[Vec<(u32, BindingKind, Descriptor)>],
+    ) -> Result<MaterialSets, VulkanError> {
         let count = u32::try_from(materials.len()).unwrap_or(u32::MAX).max(1);
-        let sizes = [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count * 8 }];
+        let sizes =
+            [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count * 8 }];
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
         // SAFETY: the device is alive.
-        let pool = unsafe { device.raw.create_descriptor_pool(&info, None) }.called("vkCreateDescriptorPool for materials")?;
+        let pool =
+            unsafe { device.raw.create_descriptor_pool(&info, None) }.called("vkCreateDescriptorPool for materials")?;
         let mut made = MaterialSets { device: device.clone(), pool, sets: Vec::new() };
         for bindings in materials {
             made.sets.push(write_descriptor_set(device, pool, layout, bindings)?);

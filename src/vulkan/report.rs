@@ -65,13 +65,21 @@ impl Survey {
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         let family = families.iter().position(|family| family.queue_flags.contains(wanted));
         let limits = &properties.limits;
-        let device_bytes: u64 = memory.memory_heaps_as_slice().iter().filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL)).map(|heap| heap.size).sum();
-        let text = |name: Result<&std::ffi::CStr, _>| name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let device_bytes: u64 = memory
+            .memory_heaps_as_slice()
+            .iter()
+            .filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL))
+            .map(|heap| heap.size)
+            .sum();
+        let text =
+            |name: Result<&std::ffi::CStr, _>| name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let report = DeviceReport {
             index,
             name: text(properties.device_name_as_c_str()),
             kind: kind_name(properties.device_type).to_owned(),
-            driver: format!("{} {}", text(vulkan12.driver_name_as_c_str()), text(vulkan12.driver_info_as_c_str())).trim().to_owned(),
+            driver: format!("{} {}", text(vulkan12.driver_name_as_c_str()), text(vulkan12.driver_info_as_c_str()))
+                .trim()
+                .to_owned(),
             api: version_text(properties.api_version),
             limits: vec![
                 ("device memory, MiB".to_owned(), (device_bytes >> 20).to_string()),
@@ -98,7 +106,12 @@ impl Survey {
     }
 }
 
-fn unfit(raw: &ash::Instance, device: vk::PhysicalDevice, properties: &vk::PhysicalDeviceProperties, timestamp_bits: Option<u32>) -> Option<String> {
+fn unfit(
+    raw: &ash::Instance,
+    device: vk::PhysicalDevice,
+    properties: &vk::PhysicalDeviceProperties,
+    timestamp_bits: Option<u32>,
+) -> Option<String> {
     if properties.api_version < vk::API_VERSION_1_3 {
         return Some(format!("it implements Vulkan {}, irradia needs 1.3", version_text(properties.api_version)));
     }
@@ -143,9 +156,15 @@ fn kind_name(kind: vk::PhysicalDeviceType) -> &'static str {
 /// All devices of the instance, the default one marked: the first fit discrete GPU, else integrated, else any.
 pub(crate) fn survey(instance: &Instance) -> Result<Vec<(vk::PhysicalDevice, Survey)>, VulkanError> {
     let devices = instance.physical_devices()?;
-    let mut surveys: Vec<_> = devices.into_iter().enumerate().map(|(index, device)| (device, Survey::of(instance, index, device))).collect();
-    let rank = |survey: &Survey| ["discrete", "integrated", "virtual", "cpu", "other"].iter().position(|kind| *kind == survey.report.kind);
-    let best = surveys.iter_mut().filter(|(_, survey)| survey.report.unfit.is_none()).min_by_key(|(_, survey)| (rank(survey), survey.report.index));
+    let mut surveys: Vec<_> =
+        devices.into_iter().enumerate().map(|(index, device)| (device, Survey::of(instance, index, device))).collect();
+    let rank = |survey: &Survey| {
+        ["discrete", "integrated", "virtual", "cpu", "other"].iter().position(|kind| *kind == survey.report.kind)
+    };
+    let best = surveys
+        .iter_mut()
+        .filter(|(_, survey)| survey.report.unfit.is_none())
+        .min_by_key(|(_, survey)| (rank(survey), survey.report.index));
     if let Some((_, survey)) = best {
         survey.report.default = true;
     }

@@ -10,7 +10,12 @@ use super::memory::{Buffer, Image, ImageInfo, Location};
 use super::recorder::{Barriers, ImageBarrier, Recorder, Scope};
 
 /// A device buffer that holds `bytes` and is only read from now on.
-pub(crate) fn buffer_with(device: &Arc<Device>, name: &str, bytes: &[u8], usage: vk::BufferUsageFlags) -> Result<Arc<Buffer>, VulkanError> {
+pub(crate) fn buffer_with(
+    device: &Arc<Device>,
+    name: &str,
+    bytes: &[u8],
+    usage: vk::BufferUsageFlags,
+) -> Result<Arc<Buffer>, VulkanError> {
     let size = bytes.len() as u64;
     let mut buffer = Buffer::new(device, name, size, usage | vk::BufferUsageFlags::TRANSFER_DST, Location::Device)?;
     // On the software driver, and wherever device memory is the host's, no copy is needed.
@@ -26,13 +31,20 @@ pub(crate) fn buffer_with(device: &Arc<Device>, name: &str, bytes: &[u8], usage:
 }
 
 /// A sampled image of 8-bit texels whose `layers` are given at full size; smaller mip levels are made from them.
-pub(crate) fn image_with(device: &Arc<Device>, name: &str, info: ImageInfo, layers: &[&[u8]]) -> Result<Arc<Image>, VulkanError> {
+pub(crate) fn image_with(
+    device: &Arc<Device>,
+    name: &str,
+    info: ImageInfo,
+    layers: &[&[u8]],
+) -> Result<Arc<Image>, VulkanError> {
     use vk::ImageLayout as Layout;
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
     let image = Image::new(device, name, info, usage, vk::ImageCreateFlags::empty())?;
     let relayout = |mips: std::ops::Range<u32>, old_layout, new_layout| Barriers {
         memory: None,
-        images: mips.map(|mip| ImageBarrier { image: &image, mip, scope: Scope::FULL, old_layout, new_layout }).collect(),
+        images: mips
+            .map(|mip| ImageBarrier { image: &image, mip, scope: Scope::FULL, old_layout, new_layout })
+            .collect(),
     };
     let mut recorder = Recorder::new(device)?;
     // One layer at a time bounds the staging memory.
@@ -59,7 +71,13 @@ pub(crate) fn image_with(device: &Arc<Device>, name: &str, info: ImageInfo, laye
 }
 
 fn staging(device: &Arc<Device>, name: &str, bytes: &[u8]) -> Result<Buffer, VulkanError> {
-    let mut staging = Buffer::new(device, &format!("{name}, staging"), bytes.len() as u64, vk::BufferUsageFlags::TRANSFER_SRC, Location::Upload)?;
+    let mut staging = Buffer::new(
+        device,
+        &format!("{name}, staging"),
+        bytes.len() as u64,
+        vk::BufferUsageFlags::TRANSFER_SRC,
+        Location::Upload,
+    )?;
     let written = staging.write(0, bytes);
     debug_assert!(written, "upload memory is mapped");
     Ok(staging)

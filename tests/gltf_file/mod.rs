@@ -26,10 +26,7 @@ impl File {
             "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
             "meshes": [{"primitives": [{"attributes": {}}]}],
         });
-        let mut file = File {
-            json,
-            bin: Vec::new(),
-        };
+        let mut file = File { json, bin: Vec::new() };
         let accessor = file.floats(positions.as_flattened(), "VEC3", positions.len());
         file.attribute("POSITION", accessor);
         file
@@ -48,9 +45,7 @@ impl File {
         if self.json[section].is_null() {
             self.json[section] = json!([]);
         }
-        let section = self.json[section]
-            .as_array_mut()
-            .expect("sections are arrays");
+        let section = self.json[section].as_array_mut().expect("sections are arrays");
         section.push(element);
         section.len() - 1
     }
@@ -59,33 +54,15 @@ impl File {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let offset = self.bin.len();
         self.bin.extend(bytes);
-        self.push(
-            "bufferViews",
-            json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()}),
-        )
+        self.push("bufferViews", json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()}))
     }
 
-    pub(crate) fn accessor(
-        &mut self,
-        bytes: &[u8],
-        component: u32,
-        shape: &str,
-        count: usize,
-    ) -> usize {
+    pub(crate) fn accessor(&mut self, bytes: &[u8], component: u32, shape: &str, count: usize) -> usize {
         let view = self.view(bytes);
-        self.push(
-            "accessors",
-            json!({"bufferView": view, "componentType": component, "type": shape, "count": count}),
-        )
+        self.push("accessors", json!({"bufferView": view, "componentType": component, "type": shape, "count": count}))
     }
 
-    pub(crate) fn normalized(
-        &mut self,
-        bytes: &[u8],
-        component: u32,
-        shape: &str,
-        count: usize,
-    ) -> usize {
+    pub(crate) fn normalized(&mut self, bytes: &[u8], component: u32, shape: &str, count: usize) -> usize {
         let accessor = self.accessor(bytes, component, shape, count);
         self.json["accessors"][accessor]["normalized"] = json!(true);
         accessor
@@ -98,10 +75,7 @@ impl File {
     /// Adds a texture and returns its index.
     pub(crate) fn texture(&mut self, image: &[u8], sampler: Value) -> usize {
         let view = self.view(image);
-        let source = self.push(
-            "images",
-            json!({"bufferView": view, "mimeType": "image/png"}),
-        );
+        let source = self.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
         let sampler = self.push("samplers", sampler);
         self.push("textures", json!({"source": source, "sampler": sampler}))
     }
@@ -113,10 +87,7 @@ impl File {
     }
 
     pub(crate) fn data_uri(&self) -> String {
-        format!(
-            "data:application/octet-stream;base64,{}",
-            base64::engine::general_purpose::STANDARD.encode(&self.bin)
-        )
+        format!("data:application/octet-stream;base64,{}", base64::engine::general_purpose::STANDARD.encode(&self.bin))
     }
 
     /// The .gltf text with this uri for the buffer.
@@ -158,24 +129,17 @@ impl File {
 }
 
 pub(crate) fn float_bytes(values: &[f32]) -> Vec<u8> {
-    values
-        .iter()
-        .flat_map(|value| value.to_le_bytes())
-        .collect()
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
 fn encode(image: DynamicImage) -> Vec<u8> {
     let mut bytes = Vec::new();
-    image
-        .write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png)
-        .expect("it can be encoded");
+    image.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).expect("it can be encoded");
     bytes
 }
 
 pub(crate) fn png(width: u32, height: u32, rgba: &[u8]) -> Vec<u8> {
-    encode(DynamicImage::ImageRgba8(
-        ImageBuffer::from_raw(width, height, rgba.to_vec()).expect("the texels fit"),
-    ))
+    encode(DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, rgba.to_vec()).expect("the texels fit")))
 }
 
 pub(crate) fn grey_png(grey: &[u8]) -> Vec<u8> {
@@ -196,11 +160,7 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     for &byte in bytes {
         crc ^= u32::from(byte);
         for _ in 0..8 {
-            crc = if crc & 1 == 0 {
-                crc >> 1
-            } else {
-                crc >> 1 ^ 0xEDB8_8320
-            };
+            crc = if crc & 1 == 0 { crc >> 1 } else { crc >> 1 ^ 0xEDB8_8320 };
         }
     }
     !crc

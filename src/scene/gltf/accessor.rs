@@ -77,12 +77,7 @@ pub(super) struct Accessors<'a> {
 
 impl<'a> Accessors<'a> {
     pub(super) fn new(document: &'a Document, storage: &'a Storage<'a>) -> Self {
-        Accessors {
-            document,
-            storage,
-            unpacked: AtomicU64::new(0),
-            kept: AtomicU64::new(0),
-        }
+        Accessors { document, storage, unpacked: AtomicU64::new(0), kept: AtomicU64::new(0) }
     }
 
     /// Components per element (1 to 4) that accessor `index` declares.
@@ -93,9 +88,7 @@ impl<'a> Accessors<'a> {
             "VEC2" => Ok(2),
             "VEC3" => Ok(3),
             "VEC4" => Ok(4),
-            _ => Err(format!(
-                "accessor {index} has type {shape:?} where a scalar or a vector belongs"
-            )),
+            _ => Err(format!("accessor {index} has type {shape:?} where a scalar or a vector belongs")),
         }
     }
 
@@ -104,58 +97,36 @@ impl<'a> Accessors<'a> {
         let Ok(accessor) = get(&self.document.accessors, index, "accessor") else {
             return 0;
         };
-        let component =
-            Component::from_code(accessor.component_type).map_or(0, Component::size) as u64;
-        accessor
-            .count
-            .saturating_mul(component * self.width(index).unwrap_or(0) as u64)
+        let component = Component::from_code(accessor.component_type).map_or(0, Component::size) as u64;
+        accessor.count.saturating_mul(component * self.width(index).unwrap_or(0) as u64)
     }
 
     /// Elements of exactly `N` components as floats.
-    pub(super) fn vectors<const N: usize>(
-        &self,
-        index: usize,
-        integers: Integers,
-    ) -> Result<Vec<[f32; N]>, String> {
+    pub(super) fn vectors<const N: usize>(&self, index: usize, integers: Integers) -> Result<Vec<[f32; N]>, String> {
         if self.width(index)? != N {
-            return Err(format!(
-                "accessor {index} has {} components per element where {N} belong",
-                self.width(index)?
-            ));
+            return Err(format!("accessor {index} has {} components per element where {N} belong", self.width(index)?));
         }
         let accessor = get(&self.document.accessors, index, "accessor")?;
         let component = component(accessor.component_type, index)?;
         let normalized = accessor.normalized || integers == Integers::Normalized;
         self.read(index, accessor, component, N, |bytes| {
-            std::array::from_fn(|lane| {
-                float(&bytes[lane * component.size()..], component, normalized)
-            })
+            std::array::from_fn(|lane| float(&bytes[lane * component.size()..], component, normalized))
         })
     }
 
     /// Scalar elements as floats.
     pub(super) fn scalars(&self, index: usize) -> Result<Vec<f32>, String> {
-        Ok(self
-            .vectors::<1>(index, Integers::AsDeclared)?
-            .into_iter()
-            .map(|[value]| value)
-            .collect())
+        Ok(self.vectors::<1>(index, Integers::AsDeclared)?.into_iter().map(|[value]| value).collect())
     }
 
     /// Vertex indices: unsigned scalars of 1, 2 or 4 bytes.
     pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, String> {
         let accessor = get(&self.document.accessors, index, "accessor")?;
         let component = component(accessor.component_type, index)?;
-        if self.width(index)? != 1
-            || !matches!(component, Component::U8 | Component::U16 | Component::U32)
-        {
-            return Err(format!(
-                "accessor {index} holds indices but is not a scalar of 1, 2 or 4 unsigned bytes"
-            ));
+        if self.width(index)? != 1 || !matches!(component, Component::U8 | Component::U16 | Component::U32) {
+            return Err(format!("accessor {index} holds indices but is not a scalar of 1, 2 or 4 unsigned bytes"));
         }
-        self.read(index, accessor, component, 1, |bytes| {
-            unsigned(bytes, component)
-        })
+        self.read(index, accessor, component, 1, |bytes| unsigned(bytes, component))
     }
 
     fn read<T: Clone + Zero>(
@@ -168,9 +139,7 @@ impl<'a> Accessors<'a> {
     ) -> Result<Vec<T>, String> {
         let size = component.size() * width;
         let base = match accessor.buffer_view {
-            Some(view) => {
-                Some(self.elements(index, view, accessor.byte_offset, accessor.count, size)?)
-            }
+            Some(view) => Some(self.elements(index, view, accessor.byte_offset, accessor.count, size)?),
             None => None,
         };
         self.charge(index, accessor.count.saturating_mul(size_of::<T>() as u64))?;
@@ -181,11 +150,10 @@ impl<'a> Accessors<'a> {
         };
         if let Some(sparse) = &accessor.sparse {
             let index_component = sparse.indices.component_type.and_then(Component::from_code);
-            let index_component = index_component
-                .filter(|c| matches!(c, Component::U8 | Component::U16 | Component::U32));
-            let index_component = index_component.ok_or(format!(
-                "the sparse indices of accessor {index} are not unsigned integers"
-            ))?;
+            let index_component =
+                index_component.filter(|c| matches!(c, Component::U8 | Component::U16 | Component::U32));
+            let index_component =
+                index_component.ok_or(format!("the sparse indices of accessor {index} are not unsigned integers"))?;
             let indices = self.elements(
                 index,
                 sparse.indices.buffer_view,
@@ -193,13 +161,8 @@ impl<'a> Accessors<'a> {
                 sparse.count,
                 index_component.size(),
             )?;
-            let replaced = self.elements(
-                index,
-                sparse.values.buffer_view,
-                sparse.values.byte_offset,
-                sparse.count,
-                size,
-            )?;
+            let replaced =
+                self.elements(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size)?;
             for (at, value) in indices.iter().zip(replaced.iter()) {
                 let at = unsigned(at, index_component) as usize;
                 let slot = values.get_mut(at).ok_or(format!(
@@ -221,9 +184,7 @@ impl<'a> Accessors<'a> {
         count: u64,
         size: usize,
     ) -> Result<Elements<'_>, String> {
-        let stride = get(&self.document.buffer_views, view, "buffer view")?
-            .byte_stride
-            .filter(|&stride| stride != 0);
+        let stride = get(&self.document.buffer_views, view, "buffer view")?.byte_stride.filter(|&stride| stride != 0);
         let stride = stride.unwrap_or(size as u64);
         if stride < size as u64 {
             return Err(format!(
@@ -233,13 +194,9 @@ impl<'a> Accessors<'a> {
         let bytes = self.storage.view(self.document, view)?;
         let length = match count {
             0 => Some(0),
-            _ => (count - 1)
-                .checked_mul(stride)
-                .and_then(|length| length.checked_add(size as u64)),
+            _ => (count - 1).checked_mul(stride).and_then(|length| length.checked_add(size as u64)),
         };
-        let end = length
-            .and_then(|length| length.checked_add(offset))
-            .filter(|&end| end <= bytes.len() as u64);
+        let end = length.and_then(|length| length.checked_add(offset)).filter(|&end| end <= bytes.len() as u64);
         if end.is_none() {
             let held = bytes.len();
             return Err(format!(
@@ -258,9 +215,7 @@ impl<'a> Accessors<'a> {
     /// Accounts for unpacking an accessor, before it is done.
     fn charge(&self, index: usize, bytes: u64) -> Result<(), String> {
         self.spend(&self.unpacked, UNPACK_RATIO, bytes)
-            .map_err(|limit| {
-                format!("accessor {index} brings the data to unpack to more than {limit}")
-            })
+            .map_err(|limit| format!("accessor {index} brings the data to unpack to more than {limit}"))
     }
 
     /// Accounts for data that stays in the scene.
@@ -275,9 +230,7 @@ impl<'a> Accessors<'a> {
         // What is refused counts too, as far as it cannot overflow: the file is not loaded anyway.
         let before = spent.fetch_add(bytes.min(limit), Ordering::Relaxed);
         if before.saturating_add(bytes) > limit {
-            return Err(format!(
-                "{ratio} times the file's {file_bytes} bytes; such a file is not loaded"
-            ));
+            return Err(format!("{ratio} times the file's {file_bytes} bytes; such a file is not loaded"));
         }
         Ok(())
     }
@@ -301,9 +254,7 @@ impl<const N: usize> Zero for [f32; N] {
 }
 
 fn component(code: u64, index: usize) -> Result<Component, String> {
-    Component::from_code(code).ok_or(format!(
-        "accessor {index} has the unknown component type {code}"
-    ))
+    Component::from_code(code).ok_or(format!("accessor {index} has the unknown component type {code}"))
 }
 
 fn unsigned(bytes: &[u8], component: Component) -> u32 {
@@ -324,9 +275,5 @@ fn float(bytes: &[u8], component: Component, normalized: bool) -> f32 {
         Component::U16 => (f32::from(u16::from_le_bytes([bytes[0], bytes[1]])), 65535.0),
         Component::U32 => (unsigned(bytes, component) as f32, u32::MAX as f32),
     };
-    if normalized {
-        (value / largest).max(-1.0)
-    } else {
-        value
-    }
+    if normalized { (value / largest).max(-1.0) } else { value }
 }

@@ -17,38 +17,25 @@ pub(super) fn split(bytes: &[u8]) -> Result<Parts<'_>, String> {
         return Ok((bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), None));
     }
     let word = |at: usize| {
-        let word = bytes
-            .get(at..at + 4)
-            .and_then(|word| word.try_into().ok())
-            .map(u32::from_le_bytes);
-        word.ok_or(format!(
-            "the GLB ends in the middle of a header, at byte {at}"
-        ))
+        let word = bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes);
+        word.ok_or(format!("the GLB ends in the middle of a header, at byte {at}"))
     };
     let version = word(4)?;
     if version != 2 {
-        return Err(format!(
-            "the GLB container has version {version}; only version 2 is supported"
-        ));
+        return Err(format!("the GLB container has version {version}; only version 2 is supported"));
     }
     let end = word(8)? as usize;
     if end > bytes.len() {
-        return Err(format!(
-            "the GLB says it has {end} bytes but has {}; it may be cut short",
-            bytes.len()
-        ));
+        return Err(format!("the GLB says it has {end} bytes but has {}; it may be cut short", bytes.len()));
     }
     let (mut at, mut json, mut binary) = (12, None, None);
     while at < end {
         let (length, kind) = (word(at)? as usize, word(at + 4)?);
         at += 8;
-        let chunk = at
-            .checked_add(length)
-            .filter(|&chunk_end| chunk_end <= end)
-            .and_then(|chunk_end| bytes.get(at..chunk_end));
-        let chunk = chunk.ok_or(format!(
-            "a GLB chunk of {length} bytes at byte {at} reaches past the end of the file"
-        ))?;
+        let chunk =
+            at.checked_add(length).filter(|&chunk_end| chunk_end <= end).and_then(|chunk_end| bytes.get(at..chunk_end));
+        let chunk =
+            chunk.ok_or(format!("a GLB chunk of {length} bytes at byte {at} reaches past the end of the file"))?;
         at += length;
         match &kind.to_le_bytes() {
             b"JSON" if json.is_none() => json = Some(chunk),
@@ -80,31 +67,22 @@ impl<'a> Storage<'a> {
         base_dir: Option<&Path>,
         file_bytes: u64,
     ) -> Self {
-        let mut storage = Storage {
-            base_dir: base_dir.map(Path::to_owned),
-            buffers: Vec::new(),
-            total_bytes: file_bytes,
-        };
+        let mut storage =
+            Storage { base_dir: base_dir.map(Path::to_owned), buffers: Vec::new(), total_bytes: file_bytes };
         // A file may name one external buffer a thousand times; it is read once.
         let mut known: HashMap<String, Result<Arc<[u8]>, String>> = HashMap::new();
         for index in 0..document.buffers.len() {
-            let buffer = get(&document.buffers, index, "buffer").and_then(|buffer| {
-                match (&buffer.uri, binary) {
-                    (Some(uri), _) => {
-                        let read = known.entry(uri.clone()).or_insert_with(|| {
-                            let bytes = storage.resolve(uri)?;
-                            storage.total_bytes += bytes.len() as u64;
-                            Ok(bytes.into())
-                        });
-                        read.clone()
-                            .map(Bytes::Shared)
-                            .map_err(|fault| format!("buffer {index}: {fault}"))
-                    }
-                    (None, Some(binary)) if index == 0 => Ok(Bytes::Borrowed(binary)),
-                    _ => Err(format!(
-                        "buffer {index} has neither a uri nor a binary chunk in the file"
-                    )),
+            let buffer = get(&document.buffers, index, "buffer").and_then(|buffer| match (&buffer.uri, binary) {
+                (Some(uri), _) => {
+                    let read = known.entry(uri.clone()).or_insert_with(|| {
+                        let bytes = storage.resolve(uri)?;
+                        storage.total_bytes += bytes.len() as u64;
+                        Ok(bytes.into())
+                    });
+                    read.clone().map(Bytes::Shared).map_err(|fault| format!("buffer {index}: {fault}"))
                 }
+                (None, Some(binary)) if index == 0 => Ok(Bytes::Borrowed(binary)),
+                _ => Err(format!("buffer {index} has neither a uri nor a binary chunk in the file")),
             });
             storage.buffers.push(buffer);
         }
@@ -116,10 +94,7 @@ impl<'a> Storage<'a> {
             Some(Ok(Bytes::Borrowed(bytes))) => Ok(bytes),
             Some(Ok(Bytes::Shared(bytes))) => Ok(bytes),
             Some(Err(fault)) => Err(fault.clone()),
-            None => Err(format!(
-                "buffer {index} is referred to, but the file has {} buffers",
-                self.buffers.len()
-            )),
+            None => Err(format!("buffer {index} is referred to, but the file has {} buffers", self.buffers.len())),
         }
     }
 
@@ -127,13 +102,15 @@ impl<'a> Storage<'a> {
     pub(super) fn view(&self, document: &Document, index: usize) -> Result<&[u8], String> {
         let view = get(&document.buffer_views, index, "buffer view")?;
         let buffer = self.buffer(view.buffer)?;
-        let range = usize::try_from(view.byte_offset)
-            .ok()
-            .zip(usize::try_from(view.byte_length).ok());
+        let range = usize::try_from(view.byte_offset).ok().zip(usize::try_from(view.byte_length).ok());
         let bytes = range.and_then(|(start, length)| buffer.get(start..start.checked_add(length)?));
         bytes.ok_or_else(|| {
             let (offset, length) = (view.byte_offset, view.byte_length);
-            format!("buffer view {index} ({length} bytes at {offset}) reaches past the {} bytes of buffer {}", buffer.len(), view.buffer)
+            format!(
+                "buffer view {index} ({length} bytes at {offset}) reaches past the {} bytes of buffer {}",
+                buffer.len(),
+                view.buffer
+            )
         })
     }
 
@@ -148,8 +125,8 @@ impl<'a> Storage<'a> {
                 "the uri {shown:?} is not a relative path; download the file and put it beside the glTF file"
             ));
         }
-        let relative = percent_decode(uri)
-            .ok_or_else(|| format!("the uri {shown:?} is not valid percent-encoded UTF-8"))?;
+        let relative =
+            percent_decode(uri).ok_or_else(|| format!("the uri {shown:?} is not valid percent-encoded UTF-8"))?;
         let path = Path::new(&relative);
         if path.has_root() || path.is_absolute() || relative.starts_with('\\') {
             return Err(format!(
@@ -157,13 +134,11 @@ impl<'a> Storage<'a> {
             ));
         }
         let base_dir = self.base_dir.as_ref();
-        let base_dir = base_dir.ok_or_else(|| {
-            format!("the uri {shown:?} names a file, but no directory to find it in was given")
-        })?;
+        let base_dir = base_dir
+            .ok_or_else(|| format!("the uri {shown:?} names a file, but no directory to find it in was given"))?;
         let path = base_dir.join(path);
         // A pipe or a device could block for ever or never end.
-        let metadata = std::fs::metadata(&path)
-            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let metadata = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         if !metadata.is_file() {
             return Err(format!("cannot read {}: it is not a file", path.display()));
         }
@@ -172,15 +147,12 @@ impl<'a> Storage<'a> {
 }
 
 fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
-    let (header, payload) = data
-        .split_once(',')
-        .ok_or("a data URI has no comma before its data")?;
+    let (header, payload) = data.split_once(',').ok_or("a data URI has no comma before its data")?;
     if !header.ends_with(";base64") {
         return Err("a data URI is not base64; only base64 data URIs are supported".into());
     }
     // Some exporters leave the padding out.
-    let config =
-        GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
+    let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     let decoded = GeneralPurpose::new(&STANDARD, config).decode(payload.trim_end());
     decoded.map_err(|error| format!("a data URI is not valid base64 ({error})"))
 }
@@ -191,9 +163,7 @@ fn has_scheme(uri: &str) -> bool {
         return false;
     };
     let mut letters = scheme.chars();
-    letters
-        .next()
-        .is_some_and(|first| first.is_ascii_alphabetic())
+    letters.next().is_some_and(|first| first.is_ascii_alphabetic())
         && letters.all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
 }
 
@@ -202,13 +172,7 @@ fn percent_decode(uri: &str) -> Option<String> {
     let mut bytes = uri.bytes();
     while let Some(byte) = bytes.next() {
         let digit = |byte: Option<u8>| char::from(byte?).to_digit(16).map(|digit| digit as u8);
-        decoded.push(if byte == b'%' {
-            digit(bytes.next())? * 16 + digit(bytes.next())?
-        } else {
-            byte
-        });
+        decoded.push(if byte == b'%' { digit(bytes.next())? * 16 + digit(bytes.next())? } else { byte });
     }
-    String::from_utf8(decoded)
-        .ok()
-        .filter(|path| !path.contains('\0'))
+    String::from_utf8(decoded).ok().filter(|path| !path.contains('\0'))
 }

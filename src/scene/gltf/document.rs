@@ -21,19 +21,13 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Element<T> {
 }
 
 /// Element `index` of a section; `kind` names the section in the fault ("mesh", "accessor").
-pub(super) fn get<'a, T>(
-    section: &'a [Element<T>],
-    index: usize,
-    kind: &str,
-) -> Result<&'a T, String> {
+pub(super) fn get<'a, T>(section: &'a [Element<T>], index: usize, kind: &str) -> Result<&'a T, String> {
     match section.get(index) {
         Some(Element(Ok(value))) => Ok(value),
         Some(Element(Err(fault))) => Err(format!("{kind} {index} is not valid glTF ({fault})")),
         None => {
             let count = section.len();
-            Err(format!(
-                "{kind} {index} is referred to, but the file has {count} of that kind"
-            ))
+            Err(format!("{kind} {index} is referred to, but the file has {count} of that kind"))
         }
     }
 }
@@ -80,11 +74,9 @@ impl Document {
     pub(super) fn light(&self, index: usize) -> Result<Light, String> {
         let lights = &self.extensions["KHR_lights_punctual"]["lights"];
         let count = lights.as_array().map_or(0, Vec::len);
-        let light = lights.get(index).ok_or(format!(
-            "light {index} is referred to, but the file has {count} lights"
-        ))?;
-        Light::deserialize(light)
-            .map_err(|fault| format!("light {index} is not valid glTF ({fault})"))
+        let light =
+            lights.get(index).ok_or(format!("light {index} is referred to, but the file has {count} lights"))?;
+        Light::deserialize(light).map_err(|fault| format!("light {index} is not valid glTF ({fault})"))
     }
 }
 

@@ -61,16 +61,13 @@ impl<'a> Loader<'a> {
         };
         let image = get(&document.images, source, "image")?;
         let default_sampler = document::Sampler::default();
-        let sampler = texture.sampler.map_or(Ok(&default_sampler), |sampler| {
-            get(&document.samplers, sampler, "sampler")
-        })?;
+        let sampler =
+            texture.sampler.map_or(Ok(&default_sampler), |sampler| get(&document.samplers, sampler, "sampler"))?;
         let source = match (image.buffer_view, &image.uri) {
             (Some(view), _) => Source::View(view),
             (None, Some(uri)) => Source::Uri(uri),
             (None, None) => {
-                return Err(format!(
-                    "image {source} has neither a uri nor a buffer view"
-                ));
+                return Err(format!("image {source} has neither a uri nor a buffer view"));
             }
         };
         let key = Key {
@@ -81,11 +78,7 @@ impl<'a> Loader<'a> {
         };
         let next = TextureId(requests.ids.len());
         Ok(Some(*requests.ids.entry(key).or_insert_with(|| {
-            let name = texture
-                .name
-                .clone()
-                .or(image.name.clone())
-                .unwrap_or_default();
+            let name = texture.name.clone().or(image.name.clone()).unwrap_or_default();
             requests.requests.push((key, name));
             next
         })))
@@ -94,10 +87,7 @@ impl<'a> Loader<'a> {
     /// Decodes every image that was asked for and adds the textures.
     pub(super) fn add_textures(&mut self, requests: TextureRequests<'a>) -> Result<(), String> {
         let mut uses: HashMap<Source, usize> = HashMap::new();
-        requests
-            .requests
-            .iter()
-            .for_each(|(key, _)| *uses.entry(key.source).or_default() += 1);
+        requests.requests.iter().for_each(|(key, _)| *uses.entry(key.source).or_default() += 1);
         let mut seen = HashSet::new();
         let keys = requests.requests.iter().map(|(key, _)| key.source);
         let sources: Vec<Source> = keys.filter(|source| seen.insert(*source)).collect();
@@ -109,8 +99,7 @@ impl<'a> Loader<'a> {
                     format!("the image {:?}", uri.chars().take(60).collect::<String>())
                 }
             };
-            self.decode(source, uses[&source] as u64, &total)
-                .map_err(|fault| format!("{what}: {fault}"))
+            self.decode(source, uses[&source] as u64, &total).map_err(|fault| format!("{what}: {fault}"))
         });
         let decoded: Vec<Decoded> = decoded.collect::<Result<_, String>>()?;
         let mut images: HashMap<Source, Decoded> = sources.into_iter().zip(decoded).collect();
@@ -120,24 +109,10 @@ impl<'a> Loader<'a> {
             };
             let left = uses.entry(key.source).or_default();
             *left -= 1;
-            let rgba8 = if *left == 0 {
-                std::mem::take(&mut image.rgba8)
-            } else {
-                image.rgba8.clone()
-            };
+            let rgba8 = if *left == 0 { std::mem::take(&mut image.rgba8) } else { image.rgba8.clone() };
             let (width, height) = (image.width, image.height);
-            let texture = Texture {
-                name,
-                width,
-                height,
-                rgba8,
-                wrap: key.wrap,
-                nearest: key.nearest,
-                srgb: key.srgb,
-            };
-            self.scene
-                .add_texture(texture)
-                .map_err(|error| error.to_string())?;
+            let texture = Texture { name, width, height, rgba8, wrap: key.wrap, nearest: key.nearest, srgb: key.srgb };
+            self.scene.add_texture(texture).map_err(|error| error.to_string())?;
         }
         Ok(())
     }
@@ -152,9 +127,8 @@ impl<'a> Loader<'a> {
             }
         };
         let reader = || {
-            let mut reader = ImageReader::new(Cursor::new(bytes))
-                .with_guessed_format()
-                .map_err(|error| error.to_string())?;
+            let mut reader =
+                ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
             if reader.format().is_none() {
                 return Err("it is neither PNG nor JPEG".to_owned());
             }
@@ -166,38 +140,18 @@ impl<'a> Loader<'a> {
             Ok(reader)
         };
         // The header alone is read first: what it claims decides whether anything is allocated.
-        let (width, height) = reader()?
-            .into_dimensions()
-            .map_err(|error| error.to_string())?;
+        let (width, height) = reader()?.into_dimensions().map_err(|error| error.to_string())?;
         let texels = u64::from(width) * u64::from(height);
-        if width.max(height) > LARGEST_SIDE
-            || texels > TEXELS_PER_BYTE.saturating_mul(bytes.len() as u64)
-        {
-            return Err(format!(
-                "its {} bytes claim {width}×{height} texels, which cannot be",
-                bytes.len()
-            ));
+        if width.max(height) > LARGEST_SIDE || texels > TEXELS_PER_BYTE.saturating_mul(bytes.len() as u64) {
+            return Err(format!("its {} bytes claim {width}×{height} texels, which cannot be", bytes.len()));
         }
         let claimed = texels * 4 * copies;
-        if total
-            .fetch_add(claimed, Ordering::Relaxed)
-            .saturating_add(claimed)
-            > LARGEST_TOTAL
-        {
-            return Err(format!(
-                "the scene's textures need more than {} GiB; make them smaller",
-                LARGEST_TOTAL >> 30
-            ));
+        if total.fetch_add(claimed, Ordering::Relaxed).saturating_add(claimed) > LARGEST_TOTAL {
+            return Err(format!("the scene's textures need more than {} GiB; make them smaller", LARGEST_TOTAL >> 30));
         }
-        let image = reader()?
-            .decode()
-            .map_err(|error| format!("it cannot be decoded ({error})"))?;
+        let image = reader()?.decode().map_err(|error| format!("it cannot be decoded ({error})"))?;
         let rgba = image.into_rgba8();
-        Ok(Decoded {
-            width: rgba.width(),
-            height: rgba.height(),
-            rgba8: rgba.into_raw(),
-        })
+        Ok(Decoded { width: rgba.width(), height: rgba.height(), rgba8: rgba.into_raw() })
     }
 }
 

@@ -39,14 +39,8 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Read`], [`SceneError::Malformed`], [`SceneError::RequiredExtensions`].
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        let name = path
-            .file_stem()
-            .unwrap_or(path.as_os_str())
-            .to_string_lossy();
+        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
         Scene::from_bytes(&name, &bytes, Some(path.parent().unwrap_or(Path::new(""))))
     }
 
@@ -54,18 +48,11 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::Malformed`], [`SceneError::RequiredExtensions`].
-    pub fn from_bytes(
-        name: &str,
-        bytes: &[u8],
-        base_dir: Option<&Path>,
-    ) -> Result<Scene, SceneError> {
-        let malformed = |fault: String| SceneError::Malformed {
-            scene: name.to_owned(),
-            fault,
-        };
+    pub fn from_bytes(name: &str, bytes: &[u8], base_dir: Option<&Path>) -> Result<Scene, SceneError> {
+        let malformed = |fault: String| SceneError::Malformed { scene: name.to_owned(), fault };
         let (json, binary) = container::split(bytes).map_err(malformed)?;
-        let document: Document = serde_json::from_slice(json)
-            .map_err(|error| malformed(format!("it is not a glTF document ({error})")))?;
+        let document: Document =
+            serde_json::from_slice(json).map_err(|error| malformed(format!("it is not a glTF document ({error})")))?;
         if !document.asset.version.starts_with("2.") {
             return Err(malformed(format!(
                 "its glTF version is {:?}; only version 2 is supported",
@@ -74,10 +61,7 @@ impl Scene {
         }
         let required = unsupported(&document.extensions_required);
         if !required.is_empty() {
-            return Err(SceneError::RequiredExtensions {
-                scene: name.to_owned(),
-                extensions: required.join(", "),
-            });
+            return Err(SceneError::RequiredExtensions { scene: name.to_owned(), extensions: required.join(", ") });
         }
         let storage = Storage::read(&document, binary, base_dir, bytes.len() as u64);
         let mut loader = Loader {
@@ -86,15 +70,10 @@ impl Scene {
             storage: &storage,
             scene: Scene::empty(name),
         };
-        loader.scene.description = document.asset.extras["description"]
-            .as_str()
-            .map(str::to_owned);
+        loader.scene.description = document.asset.extras["description"].as_str().map(str::to_owned);
         let unknown = unsupported(&document.extensions_used);
         if !unknown.is_empty() {
-            loader.warn(format!(
-                "extensions that are not supported are ignored: {}",
-                unknown.join(", ")
-            ));
+            loader.warn(format!("extensions that are not supported are ignored: {}", unknown.join(", ")));
         }
         loader.load().map_err(malformed)?;
         Ok(loader.scene)
@@ -104,10 +83,7 @@ impl Scene {
 /// The names among `extensions` that are not supported, each once, in order.
 fn unsupported(extensions: &[String]) -> Vec<&str> {
     let names: BTreeSet<&str> = extensions.iter().map(String::as_str).collect();
-    names
-        .into_iter()
-        .filter(|name| !SUPPORTED_EXTENSIONS.contains(name))
-        .collect()
+    names.into_iter().filter(|name| !SUPPORTED_EXTENSIONS.contains(name)).collect()
 }
 
 /// A scene on its way from the document. Faults are sentences without the scene's name, which [`Scene::from_bytes`] adds.
@@ -121,8 +97,7 @@ struct Loader<'a> {
 impl Loader<'_> {
     fn load(&mut self) -> Result<(), String> {
         let tree = self.read_tree()?;
-        let mesh_indices: BTreeSet<usize> =
-            tree.iter().filter_map(|branch| branch.node.mesh).collect();
+        let mesh_indices: BTreeSet<usize> = tree.iter().filter_map(|branch| branch.node.mesh).collect();
         let meshes = self.read_meshes(&mesh_indices)?;
         let materials = self.add_materials(&meshes)?;
         let mesh_ids = self.add_meshes(&mesh_indices, meshes, &materials)?;

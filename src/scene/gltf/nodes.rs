@@ -20,12 +20,8 @@ impl<'a> Loader<'a> {
     /// All nodes below the active scene's roots, depth first. A node that is reached twice, hence every cycle, is a fault.
     pub(super) fn read_tree(&mut self) -> Result<Vec<Branch<'a>>, String> {
         let document = self.document;
-        let mut pending: Vec<(usize, Option<usize>)> = self
-            .roots()?
-            .into_iter()
-            .rev()
-            .map(|root| (root, None))
-            .collect();
+        let mut pending: Vec<(usize, Option<usize>)> =
+            self.roots()?.into_iter().rev().map(|root| (root, None)).collect();
         let mut reached = vec![false; document.nodes.len()];
         let mut tree = Vec::new();
         while let Some((index, parent)) = pending.pop() {
@@ -35,17 +31,8 @@ impl<'a> Loader<'a> {
                     "node {index} is reached twice; a node may have only one parent, and none below itself"
                 ));
             }
-            pending.extend(
-                node.children
-                    .iter()
-                    .rev()
-                    .map(|&child| (child, Some(tree.len()))),
-            );
-            tree.push(Branch {
-                index,
-                parent,
-                node,
-            });
+            pending.extend(node.children.iter().rev().map(|&child| (child, Some(tree.len()))));
+            tree.push(Branch { index, parent, node });
         }
         Ok(tree)
     }
@@ -57,18 +44,11 @@ impl<'a> Loader<'a> {
             if !document.nodes.is_empty() {
                 self.warn("the file has no scene; all its nodes are shown".into());
             }
-            let nodes = (0..document.nodes.len())
-                .filter_map(|index| get(&document.nodes, index, "node").ok());
-            let children: HashSet<usize> = nodes
-                .flat_map(|node| node.children.iter().copied())
-                .collect();
-            return Ok((0..document.nodes.len())
-                .filter(|index| !children.contains(index))
-                .collect());
+            let nodes = (0..document.nodes.len()).filter_map(|index| get(&document.nodes, index, "node").ok());
+            let children: HashSet<usize> = nodes.flat_map(|node| node.children.iter().copied()).collect();
+            return Ok((0..document.nodes.len()).filter(|index| !children.contains(index)).collect());
         }
-        Ok(get(&document.scenes, document.scene.unwrap_or(0), "scene")?
-            .nodes
-            .clone())
+        Ok(get(&document.scenes, document.scene.unwrap_or(0), "scene")?.nodes.clone())
     }
 
     pub(super) fn add_nodes(
@@ -87,25 +67,16 @@ impl<'a> Loader<'a> {
                 parent: branch.parent.map(|parent| ids[parent]),
                 local: local_transform(node),
                 mesh: node.mesh.map(|mesh| meshes[&mesh]),
-                light: node.light().and_then(|light| {
-                    *lights.entry(light).or_insert_with(|| self.add_light(light))
-                }),
-                camera: node.camera.and_then(|camera| {
-                    *cameras
-                        .entry(camera)
-                        .or_insert_with(|| self.add_camera(camera))
-                }),
+                light: node.light().and_then(|light| *lights.entry(light).or_insert_with(|| self.add_light(light))),
+                camera: node
+                    .camera
+                    .and_then(|camera| *cameras.entry(camera).or_insert_with(|| self.add_camera(camera))),
             };
-            let id = self
-                .scene
-                .add_node(placed)
-                .map_err(|error| format!("node {}: {error}", branch.index))?;
+            let id = self.scene.add_node(placed).map_err(|error| format!("node {}: {error}", branch.index))?;
             ids.push(id);
         }
         if skinned > 0 {
-            self.warn(format!(
-                "skins are not supported: {skinned} skinned meshes are shown as they were modelled"
-            ));
+            self.warn(format!("skins are not supported: {skinned} skinned meshes are shown as they were modelled"));
         }
         Ok(ids)
     }
@@ -114,39 +85,23 @@ impl<'a> Loader<'a> {
     fn add_light(&mut self, index: usize) -> Option<LightId> {
         let added = self.document.light(index).and_then(|light| {
             let light = convert_light(&light)?;
-            self.scene
-                .add_light(light)
-                .map_err(|error| error.to_string())
+            self.scene.add_light(light).map_err(|error| error.to_string())
         });
-        added
-            .map_err(|fault| self.warn(format!("light {index} is left out: {fault}")))
-            .ok()
+        added.map_err(|fault| self.warn(format!("light {index} is left out: {fault}"))).ok()
     }
 
     fn add_camera(&mut self, index: usize) -> Option<CameraId> {
         let added = get(&self.document.cameras, index, "camera").and_then(|camera| {
-            let projection = convert_projection(camera)
-                .ok_or("its projection is missing or of no known kind")?;
-            let camera = Camera {
-                name: camera.name.clone().unwrap_or_default(),
-                projection,
-            };
-            self.scene
-                .add_camera(camera)
-                .map_err(|error| error.to_string())
+            let projection = convert_projection(camera).ok_or("its projection is missing or of no known kind")?;
+            let camera = Camera { name: camera.name.clone().unwrap_or_default(), projection };
+            self.scene.add_camera(camera).map_err(|error| error.to_string())
         });
-        added
-            .map_err(|fault| self.warn(format!("camera {index} is left out: {fault}")))
-            .ok()
+        added.map_err(|fault| self.warn(format!("camera {index} is left out: {fault}"))).ok()
     }
 
     /// Adds all animations, without the channels that move nothing in the active scene or are not valid.
     pub(super) fn add_animations(&mut self, tree: &[Branch], ids: &[NodeId]) -> Result<(), String> {
-        let nodes: HashMap<usize, usize> = tree
-            .iter()
-            .enumerate()
-            .map(|(at, branch)| (branch.index, at))
-            .collect();
+        let nodes: HashMap<usize, usize> = tree.iter().enumerate().map(|(at, branch)| (branch.index, at)).collect();
         for index in 0..self.document.animations.len() {
             let animation = match get(&self.document.animations, index, "animation") {
                 Ok(animation) => animation,
@@ -165,19 +120,12 @@ impl<'a> Loader<'a> {
                         channels.push(channel);
                     }
                     Ok(None) => {}
-                    Err(fault) => self.warn(format!(
-                        "animation {index}, channel {number} is left out: {fault}"
-                    )),
+                    Err(fault) => self.warn(format!("animation {index}, channel {number} is left out: {fault}")),
                 }
             }
             if !channels.is_empty() {
-                let animation = Animation {
-                    name: animation.name.clone().unwrap_or_default(),
-                    channels,
-                };
-                self.scene
-                    .add_animation(animation)
-                    .map_err(|error| error.to_string())?;
+                let animation = Animation { name: animation.name.clone().unwrap_or_default(), channels };
+                self.scene.add_animation(animation).map_err(|error| error.to_string())?;
                 poses
                     .into_iter()
                     .filter_map(|(id, pose)| Some((id, pose?)))
@@ -214,41 +162,22 @@ impl<'a> Loader<'a> {
         };
         let times = self.accessors.scalars(sampler.input)?;
         let values: Vec<[f32; 4]> = if property == Property::Rotation {
-            self.accessors
-                .vectors::<4>(sampler.output, Integers::Normalized)?
+            self.accessors.vectors::<4>(sampler.output, Integers::Normalized)?
         } else {
-            let vectors = self
-                .accessors
-                .vectors::<3>(sampler.output, Integers::Normalized)?;
-            vectors
-                .into_iter()
-                .map(|[x, y, z]| [x, y, z, 0.0])
-                .collect()
+            let vectors = self.accessors.vectors::<3>(sampler.output, Integers::Normalized)?;
+            vectors.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()
         };
         let grows = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
         if times.is_empty() || !grows {
             return Err("its times do not grow".into());
         }
         if values.len() != times.len() * values_per_key {
-            return Err(format!(
-                "it has {} values for {} times",
-                values.len(),
-                times.len()
-            ));
+            return Err(format!("it has {} values for {} times", values.len(), times.len()));
         }
         if !values.iter().flatten().all(|value| value.is_finite()) {
             return Err("a value is not finite".into());
         }
-        Ok(Some((
-            at,
-            Channel {
-                node: NodeId(0),
-                property,
-                interpolation,
-                times,
-                values,
-            },
-        )))
+        Ok(Some((at, Channel { node: NodeId(0), property, interpolation, times, values })))
     }
 }
 
@@ -275,10 +204,7 @@ fn convert_light(light: &document::Light) -> Result<Light, String> {
         "spot" => {
             let cone = light.spot.as_ref().ok_or("it is a spot without a cone")?;
             let outer_angle = cone.outer_cone_angle.unwrap_or(FRAC_PI_4).min(FRAC_PI_2);
-            LightKind::Spot {
-                inner_angle: cone.inner_cone_angle.unwrap_or(0.0).min(outer_angle),
-                outer_angle,
-            }
+            LightKind::Spot { inner_angle: cone.inner_cone_angle.unwrap_or(0.0).min(outer_angle), outer_angle }
         }
         other => return Err(format!("its kind {other:?} is not known")),
     };
@@ -286,35 +212,24 @@ fn convert_light(light: &document::Light) -> Result<Light, String> {
     Ok(Light {
         name: light.name.clone().unwrap_or_default(),
         kind,
-        intensity: light
-            .color
-            .unwrap_or([1.0; 3])
-            .map(|channel| channel * strength),
-        range: light
-            .range
-            .filter(|range| range.is_finite() && *range > 0.0),
+        intensity: light.color.unwrap_or([1.0; 3]).map(|channel| channel * strength),
+        range: light.range.filter(|range| range.is_finite() && *range > 0.0),
     })
 }
 
 fn convert_projection(camera: &document::Camera) -> Option<Projection> {
     match camera.kind.as_str() {
-        "perspective" => camera
-            .perspective
-            .as_ref()
-            .map(|it| Projection::Perspective {
-                vertical_fov: it.yfov,
-                aspect: it.aspect_ratio,
-                near: it.znear,
-            }),
-        "orthographic" => camera
-            .orthographic
-            .as_ref()
-            .map(|it| Projection::Orthographic {
-                half_width: it.xmag,
-                half_height: it.ymag,
-                near: it.znear,
-                far: it.zfar,
-            }),
+        "perspective" => camera.perspective.as_ref().map(|it| Projection::Perspective {
+            vertical_fov: it.yfov,
+            aspect: it.aspect_ratio,
+            near: it.znear,
+        }),
+        "orthographic" => camera.orthographic.as_ref().map(|it| Projection::Orthographic {
+            half_width: it.xmag,
+            half_height: it.ymag,
+            near: it.znear,
+            far: it.zfar,
+        }),
         _ => None,
     }
 }
