@@ -20,9 +20,8 @@ fn inside_view() -> FrameRequest {
 
 /// What each light's texels reflect in the scene, W.
 fn measure(session: &Session, scene: &Scene) -> Vec<DVec3> {
-    let frame = probe(session, scene, &settings(&[]), &inside_view(), |graph, declared| {
-        vec![light_flux(graph, declared)]
-    });
+    let frame =
+        probe(session, scene, &settings(&[]), &inside_view(), |graph, declared| vec![light_flux(graph, declared)]);
     frame.flux_of_lights(0)
 }
 
@@ -125,9 +124,10 @@ fn a_sky_sends_what_the_scene_catches() {
     let mut scene = white_box();
     let radiance = DVec3::new(0.5, 0.75, 1.5);
     scene.set_sky([0.5, 0.75, 1.5]);
-    let frame = probe(&session, &scene, &settings(&[("lights.resolution", "256")]), &inside_view(), |graph, declared| {
-        vec![light_flux(graph, declared)]
-    });
+    let frame =
+        probe(&session, &scene, &settings(&[("lights.resolution", "256")]), &inside_view(), |graph, declared| {
+            vec![light_flux(graph, declared)]
+        });
     let fluxes = frame.flux_of_lights(0);
     for (index, (light, found)) in frame.set.lights.iter().zip(&fluxes).enumerate() {
         let direction = DVec3::from(light.direction.map(f64::from));

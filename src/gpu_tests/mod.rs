@@ -4,17 +4,17 @@
 //! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
 //! that outlives its renderer.
 
-// mod direct;
-// mod flux;
-// mod gather;
+mod direct;
+mod flux;
+mod gather;
 mod graph;
-// mod invariance;
-// mod light_share;
-// mod probe;
+mod invariance;
+mod light_share;
+mod probe;
 mod raster;
-// mod repeats;
-// mod robustness;
-// mod scenes;
+mod repeats;
+mod robustness;
+mod scenes;
 mod session;
-// mod skipping;
-// mod tonemap;
+mod skipping;
+mod tonemap;

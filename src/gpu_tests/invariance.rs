@@ -1,0 +1,105 @@
+//! A scene that is scaled, turned or moved as a whole, with its lights and its camera, gives the same image.
+//!
+//! Asserted, with the mean of the original's channels as unit: the root of the mean squared difference, and the
+//! difference of 99.9 % of all pixels, stay below 10⁻³.
+
+use glam::{DAffine3, DQuat, DVec3};
+
+use super::scenes::{builtin, request, settings};
+use super::session::Session;
+use crate::renderer::{ColorImage, Slot};
+use crate::scene::{Camera, CameraId, LightId, LightKind, NodeId, Projection, Scene};
+
+const BOUND: f64 = 1e-3;
+
+/// Applies `transform` to everything; `scale` is the factor that it holds.
+fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
+    let mut copy = scene.clone();
+    let roots: Vec<_> = scene.nodes().iter().enumerate().filter(|(_, node)| node.parent.is_none()).collect();
+    for (index, node) in roots {
+        copy.set_local_transform(NodeId(index), transform * node.local).expect("a finite transform");
+    }
+    for (index, camera) in scene.cameras().iter().enumerate() {
+        let projection = match camera.projection {
+            Projection::Perspective { vertical_fov, aspect, near } => {
+                Projection::Perspective { vertical_fov, aspect, near: near * scale }
+            }
+            Projection::Orthographic { half_width, half_height, near, far } => Projection::Orthographic {
+                half_width: half_width * scale,
+                half_height: half_height * scale,
+                near: near * scale,
+                far: far * scale,
+            },
+        };
+        copy.set_camera(CameraId(index), Camera { projection, ..camera.clone() }).expect("a sound camera");
+    }
+    for (index, light) in scene.lights().iter().enumerate() {
+        // The same irradiance at a distance that is longer by the factor.
+        let factor = if light.kind == LightKind::Directional { 1.0 } else { (scale * scale) as f32 };
+        let light = crate::scene::Light {
+            intensity: light.intensity.map(|channel| channel * factor),
+            range: light.range.map(|range| range * scale as f32),
+            ..light.clone()
+        };
+        copy.set_light(LightId(index), light).expect("a sound light");
+    }
+    copy
+}
+
+/// Root mean square and the 99.9th percentile of the difference, over the mean.
+fn difference(original: &ColorImage, copy: &ColorImage) -> (f64, f64) {
+    let channels = || original.pixels.iter().flatten().map(|&channel| f64::from(channel));
+    let count = 3.0 * original.pixels.len() as f64;
+    let mean = channels().sum::<f64>() / count;
+    let mut squares = 0.0;
+    let mut pixels = Vec::new();
+    for (before, after) in original.pixels.iter().zip(&copy.pixels) {
+        let off = [0, 1, 2].map(|channel| f64::from(after[channel]) - f64::from(before[channel]));
+        squares += off.iter().map(|off| off * off).sum::<f64>();
+        pixels.push(off.iter().fold(0.0, |most: f64, off| most.max(off.abs())));
+    }
+    pixels.sort_by(f64::total_cmp);
+    let most = pixels[pixels.len() * 999 / 1000];
+    ((squares / count).sqrt() / mean, most / mean)
+}
+
+fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
+    let session = Session::open();
+    let settings = settings(&[]);
+    for name in ["cornell-spot", "cornell-panel", "lights"] {
+        let scene = builtin(name);
+        let image = |scene: &Scene| {
+            let camera = scene.camera_view(None).expect("its camera");
+            session.render(scene, &settings, &request([120, 90], camera, &[Slot::Direct, Slot::Diffuse]))
+        };
+        let (original, copy) = (image(&scene), image(&transformed(&scene, transform, scale)));
+        let slots = |slot: Slot| difference(&original.slots[&slot], &copy.slots[&slot]);
+        println!("{name} {what}: direct {:.1e} {:.1e}", slots(Slot::Direct).0, slots(Slot::Direct).1);
+        println!("{name} {what}: diffuse {:.1e} {:.1e}", slots(Slot::Diffuse).0, slots(Slot::Diffuse).1);
+        let image = |frame: &crate::renderer::Frame| frame.image.clone().expect("it was asked for");
+        let (rmse, most) = difference(&image(&original), &image(&copy));
+        println!("{name} {what}: rmse {rmse:.1e}, 99.9 % of the pixels within {most:.1e} of the mean");
+        assert!(rmse <= BOUND && most <= BOUND, "{name} {what}: rmse {rmse:.1e}, pixels {most:.1e}");
+    }
+}
+
+#[test]
+fn a_scene_of_millimetres_gives_the_same_image() {
+    assert_invariant("scaled by 10⁻³", DAffine3::from_scale(DVec3::splat(1e-3)), 1e-3);
+}
+
+#[test]
+fn a_scene_of_kilometres_gives_the_same_image() {
+    assert_invariant("scaled by 10³", DAffine3::from_scale(DVec3::splat(1e3)), 1e3);
+}
+
+#[test]
+fn a_turned_scene_gives_the_same_image() {
+    let turn = DQuat::from_axis_angle(DVec3::new(0.3, -0.7, 0.5).normalize(), 1.234);
+    assert_invariant("turned", DAffine3::from_quat(turn), 1.0);
+}
+
+#[test]
+fn a_scene_far_from_the_origin_gives_the_same_image() {
+    assert_invariant("moved by 10⁵ m", DAffine3::from_translation(DVec3::new(6e4, -5e4, 6.2e4)), 1.0);
+}
