@@ -183,19 +183,21 @@ fn an_edited_scene_is_as_a_fresh_one() {
         let (mut renderer, request) = small(&scene, &session);
         let mut last = bits(&renderer.render(&scene, &request).expect("a frame"));
         let bounds = scene.bounds().expect("it has triangles");
+        let lift = |scene: &mut Scene, node: NodeId| {
+            let local = DAffine3::from_translation(DVec3::new(0.02, 0.03, -0.01)) * scene.nodes()[node.0].local;
+            scene.set_local_transform(node, local).expect("finite");
+        };
         // Something that does not bear the scene's bounds, which fix the origin that a renderer works around.
-        let inner = scene.instances().iter().find(|instance| {
-            let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
-            let corners = primitive.positions.iter().map(|&p| instance.world.transform_point3(p.map(f64::from).into()));
-            corners.into_iter().all(|p| (p - bounds.center()).abs().cmplt(0.45 * bounds.size()).all())
-        });
-        let inner = inner.expect("something stands inside").node;
+        let inside = |node: &NodeId| {
+            let mut copy = scene.clone();
+            lift(&mut copy, *node);
+            copy.bounds() == Some(bounds)
+        };
+        let inner =
+            scene.instances().iter().map(|instance| instance.node).find(inside).expect("something stands inside");
         type Edit = fn(&mut Scene, NodeId);
         let edits: [(&str, Edit); 4] = [
-            ("a moved object", |scene, inner| {
-                let local = DAffine3::from_translation(DVec3::new(0.02, 0.03, -0.01)) * scene.nodes()[inner.0].local;
-                scene.set_local_transform(inner, local).expect("finite");
-            }),
+            ("a moved object", lift),
             ("a changed material", |scene, _| {
                 let mut material = scene.materials()[0].clone();
                 material.base_color = [0.3, 0.9, 0.2, 1.0];
