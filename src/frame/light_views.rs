@@ -50,7 +50,7 @@ pub(crate) fn light_views(
     };
     let reflective = reflective.then(|| ReflectiveViews {
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
-        flux: graph.image("light_views.flux", vk::Format::R16G16B16A16_SFLOAT, size),
+        flux: graph.image("light_views.flux", vk::Format::R32G32B32A32_SFLOAT, size),
     });
     let draw_views: Vec<DrawView> =
         (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();

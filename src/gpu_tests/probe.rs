@@ -1,7 +1,6 @@
 //! One frame with its intermediate results read back: light views, virtual point lights, G-buffer.
 
 use glam::{DVec3, UVec4, Vec3, Vec4};
-use half::f16;
 
 use super::session::Session;
 use crate::frame::light_set::LightSet;
@@ -95,10 +94,8 @@ impl Probe {
             let mut sum = DVec3::ZERO;
             for y in top..top + height {
                 for x in left..left + width {
-                    let at = 8 * (y * self.set.atlas.size[0] + x) as usize;
-                    let channel = |index: usize| {
-                        f64::from(f16::from_le_bytes([bytes[at + 2 * index], bytes[at + 2 * index + 1]]))
-                    };
+                    let at = 16 * (y * self.set.atlas.size[0] + x) as usize;
+                    let channel = |index: usize| f64::from(f32::from_bits(word(&bytes[at + 4 * index..])));
                     sum += DVec3::new(channel(0), channel(1), channel(2));
                 }
             }
