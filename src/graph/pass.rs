@@ -64,10 +64,20 @@ pub(super) enum Work {
     Skipped(String),
     Dispatch([u32; 3]),
     #[allow(dead_code, reason = "photon and list passes of the methods to come")]
-    DispatchIndirect { buffer: usize, offset: u64 },
+    DispatchIndirect {
+        buffer: usize,
+        offset: u64,
+    },
     Draw(Draws),
-    ClearImage { image: usize, mips: Range<u32>, value: ClearColor },
-    FillBuffer { buffer: usize, word: u32 },
+    ClearImage {
+        image: usize,
+        mips: Range<u32>,
+        value: ClearColor,
+    },
+    FillBuffer {
+        buffer: usize,
+        word: u32,
+    },
 }
 
 /// Attachments of a raster pass and the values that they are cleared to.
