@@ -1,10 +1,12 @@
 //! A scene that is scaled, turned or moved as a whole, with its lights and its camera, gives the same image.
 //!
-//! Asserted, with the mean of the original's channels as unit. Below 10⁻³: the root of the mean squared difference of the
-//! image and of direct light, and the difference of 99.9 % of the pixels of direct light. Below 10⁻²: the difference of 99.9 %
-//! of the pixels of the image. Diffuse light alone is printed, not bounded: a virtual light sits on one texel of a light view,
-//! and where the middle of its share of the flux falls on the border of two texels, rounding decides between them; one light
-//! of 256 that moves to another wall shows in a slot that is much darker than the image. Moving alone gives the same bits.
+//! Asserted, with the mean of the original's channels as unit, for the 99.9 % of the pixels that are least off (the others
+//! are silhouettes, where a pixel shows one surface or the other): the root of their mean squared difference is below 10⁻³,
+//! for the image and for direct light; and no pixel of direct light is off by more than 10⁻³, none of the image by 10⁻².
+//!
+//! Single pixels of the image are held to less, and the test takes 4096 virtual lights, since a virtual light sits on one texel
+//! of a light view: where the middle of its share of the flux falls on the border of two texels, rounding decides between them.
+//! Moving alone gives the same bits.
 
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -49,32 +51,29 @@ fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
     copy
 }
 
-/// How far two images are apart, over the mean of the first.
+/// How far two images are apart, over the mean of the first; without the thousandth of the pixels that is furthest off.
 struct Difference {
     rmse: f64,
-    /// Of 95 % and of 99.9 % of the pixels: the most that a channel is off.
-    most: [f64; 2],
+    most: f64,
 }
 
 fn difference(original: &ColorImage, copy: &ColorImage) -> Difference {
-    let channels = || original.pixels.iter().flatten().map(|&channel| f64::from(channel));
-    let count = 3.0 * original.pixels.len() as f64;
-    let mean = channels().sum::<f64>() / count;
-    let mut squares = 0.0;
-    let mut pixels = Vec::new();
-    for (before, after) in original.pixels.iter().zip(&copy.pixels) {
-        let off = [0, 1, 2].map(|channel| f64::from(after[channel]) - f64::from(before[channel]));
-        squares += off.iter().map(|off| off * off).sum::<f64>();
-        pixels.push(off.iter().fold(0.0, |most: f64, off| most.max(off.abs())) / mean);
-    }
+    let channels = original.pixels.iter().flatten().map(|&channel| f64::from(channel));
+    let mean = channels.sum::<f64>() / (3.0 * original.pixels.len() as f64);
+    let off = |(before, after): (&[f32; 3], &[f32; 3])| {
+        let channels = [0, 1, 2].map(|channel| f64::from(after[channel]) - f64::from(before[channel]));
+        channels.iter().fold(0.0, |most: f64, off| most.max(off.abs())) / mean
+    };
+    let mut pixels: Vec<f64> = original.pixels.iter().zip(&copy.pixels).map(off).collect();
     pixels.sort_by(f64::total_cmp);
-    let most = [950, 999].map(|share| pixels[pixels.len() * share / 1000]);
-    Difference { rmse: (squares / count).sqrt() / mean, most }
+    pixels.truncate(pixels.len() * 999 / 1000);
+    let squares: f64 = pixels.iter().map(|off| off * off).sum();
+    Difference { rmse: (squares / pixels.len() as f64).sqrt(), most: pixels.last().copied().unwrap_or(0.0) }
 }
 
 fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
     let session = Session::open();
-    let settings = settings(&[]);
+    let settings = settings(&[("rsm.vpls", "4096")]);
     for name in ["cornell-spot", "cornell-panel", "lights"] {
         let scene = builtin(name);
         let image = |scene: &Scene| {
@@ -84,8 +83,7 @@ fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
         let (original, copy) = (image(&scene), image(&transformed(&scene, transform, scale)));
         let of = |what: &str, original: &ColorImage, copy: &ColorImage| {
             let found = difference(original, copy);
-            let Difference { rmse, most: [most, nearly_all] } = found;
-            println!("{name} {what}: rmse {rmse:.1e}, 95 % within {most:.1e}, 99.9 % within {nearly_all:.1e}");
+            println!("{name} {what}: rmse {:.1e}, at most {:.1e}", found.rmse, found.most);
             found
         };
         let slots = |slot: Slot| of(&format!("{what}, {slot}"), &original.slots[&slot], &copy.slots[&slot]);
@@ -94,8 +92,8 @@ fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
         let whole = of(what, &image(&original), &image(&copy));
         let rmse = direct.rmse.max(whole.rmse);
         assert!(rmse <= BOUND, "{name} {what}: rmse {rmse:.1e}");
-        assert!(direct.most[1] <= BOUND, "{name} {what}: pixels of direct light {:.1e}", direct.most[1]);
-        assert!(whole.most[1] <= 10.0 * BOUND, "{name} {what}: pixels {:.1e}", whole.most[1]);
+        assert!(direct.most <= BOUND, "{name} {what}: pixels of direct light {:.1e}", direct.most);
+        assert!(whole.most <= 10.0 * BOUND, "{name} {what}: pixels {:.1e}", whole.most);
     }
 }
 
