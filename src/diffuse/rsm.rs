@@ -25,6 +25,7 @@ const MOST_TILE_GROUPS: u32 = 32768;
 /// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
 pub(crate) struct Rsm {
     pub(crate) diffuse: ImageRef,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) vpls: BufferRef<[f32; 4]>,
 }
 

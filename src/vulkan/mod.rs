@@ -21,8 +21,8 @@ pub use error::VulkanError;
 pub use instance::Validation;
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
 pub(crate) use pipelines::{
-    DepthState, Pipeline, Pipelines, RasterState, SamplerKind, TargetFormats, VertexAttribute, VertexLayout,
-    pipeline_stages,
+    DepthState, Pipeline, Pipelines, RasterState, SamplerKind, StencilState, TargetFormats, VertexAttribute,
+    VertexLayout, pipeline_stages,
 };
 pub(crate) use queries::Queries;
 pub(crate) use recorder::{Attachment, Attachments, Barriers, Descriptor, ImageBarrier, MaterialSets, Recorder, Scope};
