@@ -185,9 +185,8 @@ mod tests {
         let adaptation = Adaptation::of(&even);
         assert!((adaptation.log_average - 0.5).abs() < 1e-6);
         assert!((adaptation.max_luminance - 0.5).abs() < 1e-6);
-        // Half black: the mean is 0.25, the floor 2.5e-5, the log-average their geometric mean with 0.5.
         let half = [[0.5; 3], [0.0; 3]];
-        assert!((log_average_luminance(&half) - (0.5_f64 * 0.25e-4).sqrt()).abs() < 1e-6);
+        assert!((log_average_luminance(&half) - 0.5).abs() < 1e-6, "black pixels do not count");
     }
 
     #[test]
