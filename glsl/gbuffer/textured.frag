@@ -16,11 +16,11 @@ layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
 layout(location = 2) flat in uint instance_index;
 layout(location = 3) in vec4 vertex_tangent;
-layout(location = 4) in vec4 texcoords;
+layout(location = 4) in vec4 texcoord_sets;
 
 // The normal map's vector n' = t.x·T + t.y·B + t.z·N with B = w·(N×T) (glTF 2.0; MikkTSpace). A mirroring transform turns the
 // cross product round, which the tangent's sign makes good. Without tangents there is no frame to read the map in.
-vec3 mapped_normal(Instance instance, Material material, Normals normals) {
+vec3 mapped_normal(Instance instance, Material material, Normals normals, Texcoords texcoords) {
     if (!has_texture(material, MATERIAL_NORMAL_TEXTURE) || (instance.flags & INSTANCE_HAS_TANGENTS) == 0u) {
         return normals.vertex;
     }
@@ -33,6 +33,7 @@ vec3 mapped_normal(Instance instance, Material material, Normals normals) {
 }
 
 void main() {
+    Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = instances[instance_index];
     Material material = materials[instance.material];
     MaterialPoint point = material_factors(material, vertex_color);
@@ -45,7 +46,7 @@ void main() {
     Lobes lobes = lobes_of_material(material, point);
 
     Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
-    vec3 shading_normal = towards_viewer(mapped_normal(instance, material, normals), normals);
+    vec3 shading_normal = towards_viewer(mapped_normal(instance, material, normals, texcoords), normals);
     bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);
 
     surface = pack_surface(shading_normal, normals.geometric, lobes);

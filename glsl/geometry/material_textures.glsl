@@ -22,19 +22,39 @@ bool has_texture(Material material, uint kind) {
     return (material.flags & TEXTURES & kind) != 0u;
 }
 
-vec4 sample_texture(sampler2DArray array, TextureUse use, vec4 texcoords) {
-    vec3 uv = vec3(use.texcoord == 0u ? texcoords.xy : texcoords.zw, 1.0);
-    return texture(array, vec3(dot(use.u_row, uv), dot(use.v_row, uv), float(use.layer)));
+// Texture coordinates of a fragment, set 0 in xy, set 1 in zw, and their screen-space derivatives. These are taken from the
+// interpolated vertex outputs, in uniform control flow: behind a load that depends on the material a helper invocation at a
+// triangle's edge may see zeros (it does on lavapipe), and the fragment would sample the coarsest mip level.
+struct Texcoords {
+    vec4 sets;
+    vec4 dx;
+    vec4 dy;
+};
+
+Texcoords texcoords_of_fragment(vec4 sets) {
+    return Texcoords(sets, dFdx(sets), dFdy(sets));
 }
 
-// glTF 2.0: which channel of which texture scales which factor. `texcoords`: set 0 in xy, set 1 in zw.
-void apply_base_color_texture(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+vec2 set_of(TextureUse use, vec4 sets) {
+    return use.texcoord == 0u ? sets.xy : sets.zw;
+}
+
+vec4 sample_texture(sampler2DArray array, TextureUse use, Texcoords texcoords) {
+    vec3 uv = vec3(set_of(use, texcoords.sets), 1.0);
+    mat2 linear = transpose(mat2(use.u_row.xy, use.v_row.xy));
+    vec2 dx = linear * set_of(use, texcoords.dx);
+    vec2 dy = linear * set_of(use, texcoords.dy);
+    return textureGrad(array, vec3(dot(use.u_row, uv), dot(use.v_row, uv), float(use.layer)), dx, dy);
+}
+
+// glTF 2.0: which channel of which texture scales which factor.
+void apply_base_color_texture(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_BASE_COLOR_TEXTURE)) {
         point.base_color *= sample_texture(base_color_texture, material_textures[index].base_color, texcoords);
     }
 }
 
-void apply_lobe_textures(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+void apply_lobe_textures(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_METALLIC_ROUGHNESS_TEXTURE)) {
         vec4 texel = sample_texture(metallic_roughness_texture, material_textures[index].metallic_roughness, texcoords);
         point.roughness *= texel.g;
@@ -51,7 +71,7 @@ void apply_lobe_textures(inout MaterialPoint point, Material material, uint inde
     }
 }
 
-void apply_emissive_texture(inout MaterialPoint point, Material material, uint index, vec4 texcoords) {
+void apply_emissive_texture(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_EMISSIVE_TEXTURE)) {
         point.emissive *= sample_texture(emissive_texture, material_textures[index].emissive, texcoords).rgb;
     }

@@ -9,6 +9,9 @@ struct ShadowFilter {
     int radius;           // taps: (2·radius + 1)²
 };
 
+// How far, in texel widths, a texel's surface may lie behind the receiver's plane and still be taken for the receiver's.
+const float SURFACE_DEPTH_TEXELS = 4.0;
+
 // The share of the light that arrives, 0 … 1: percentage-closer filtering (Reeves et al. 1987) with (2r+1)² bilinear taps one texel
 // apart. Neighbouring taps share texels, so their sum is one comparison for each of (2r+2)² texels, weighted 1−f, 1, …, 1, f in x and y.
 //
@@ -19,6 +22,10 @@ struct ShadowFilter {
 // A flat receiver is then free of acne at every slope without a bias, and nothing detaches from its shadow.
 // What remains, rounding and dents between facets, is met by moving the receiver along its normal by a share of the texel
 // that grows with the slope (Holbert 2011). Slopes are capped at a cosine of 0.02.
+//
+// A texel through which the light passes far behind that plane does not show the receiver's surface at all: the surface ends before
+// it. Such texels say nothing about the receiver and are left out of the average; counted as lit, they would let light in along
+// the edges of closed rooms. If no texel is left, nothing stands in the light's way.
 float light_visibility(sampler2D light_depth, LightView view, vec3 position_rs, vec3 normal, ShadowFilter shadow_filter) {
     vec3 receiver = position_rs - view.origin_rs;
     bool orthographic = is_orthographic(view);
@@ -48,19 +55,22 @@ float light_visibility(sampler2D light_depth, LightView view, vec3 position_rs, 
     vec2 fraction = texel - whole;
     ivec2 base = view.rect_origin + ivec2(clamp(whole, vec2(-1.0), vec2(view.rect_size)));
     ivec2 last = view.rect_origin + view.rect_size - 1;
+    float behind = SURFACE_DEPTH_TEXELS * texel_width * (orthographic ? 1.0 / view.depth_range : view.near / (z * z));
     int radius = shadow_filter.radius;
-    float sum = 0.0;
+    float lit = 0.0;
+    float seen = 0.0;
     for (int y = -radius; y <= radius + 1; ++y) {
         float weight_y = y == -radius ? 1.0 - fraction.y : y == radius + 1 ? fraction.y : 1.0;
         for (int x = -radius; x <= radius + 1; ++x) {
             float weight_x = x == -radius ? 1.0 - fraction.x : x == radius + 1 ? fraction.x : 1.0;
             float occluder = texelFetch(light_depth, clamp(base + ivec2(x, y), view.rect_origin, last), 0).x;
             float plane = depth + dot(gradient, vec2(x, y) - fraction);
-            sum += occluder <= max(plane, 0.0) ? weight_x * weight_y : 0.0;
+            float weight = plane - occluder <= behind ? weight_x * weight_y : 0.0;
+            seen += weight;
+            lit += occluder <= max(plane, 0.0) ? weight : 0.0;
         }
     }
-    float side = float(2 * radius + 1);
-    return sum / (side * side);
+    return seen > 0.0 ? lit / seen : 1.0;
 }
 
 #endif

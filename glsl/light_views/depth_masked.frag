@@ -7,10 +7,11 @@
 layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
 
 layout(location = 0) in float vertex_alpha;
-layout(location = 1) in vec4 texcoords;
+layout(location = 1) in vec4 texcoord_sets;
 layout(location = 2) flat in uint material_index;
 
 void main() {
+    Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Material material = materials[material_index];
     MaterialPoint point = material_factors(material, vec4(1.0, 1.0, 1.0, vertex_alpha));
     apply_base_color_texture(point, material, material_index, texcoords);

@@ -15,9 +15,10 @@ layout(constant_id = 1) const uint ALPHA_MASK = 0u;
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
 layout(location = 2) flat in uint instance_index;
-layout(location = 3) in vec4 texcoords;
+layout(location = 3) in vec4 texcoord_sets;
 
 void main() {
+    Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = instances[instance_index];
     Material material = materials[instance.material];
     MaterialPoint point = material_factors(material, vertex_color);

@@ -290,7 +290,7 @@ impl Settings {
             preset,
             methods: technique.methods(),
             lights,
-            shadow: ShadowSettings { filter_radius: 1, normal_offset: 1.5 },
+            shadow: ShadowSettings { filter_radius: 1, normal_offset: 0.05 },
             rsm: RsmSettings { vpls: 256 },
         };
         let lights = default.lights.clone();
