@@ -9,17 +9,17 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 
 /// The smallest GGX α that the shaders evaluate (`lib/brdf.glsl`).
-pub const MINIMUM_ALPHA: f32 = 1e-3;
+pub(crate) const MINIMUM_ALPHA: f32 = 1e-3;
 
 /// Luminance weights of Rec. 709 (`lib/color.glsl`).
 #[must_use]
-pub fn luminance(color: Vec3) -> f32 {
+pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// The sRGB curve, IEC 61966-2-1 (`lib/color.glsl`).
 #[must_use]
-pub fn srgb_encode(linear: Vec3) -> Vec3 {
+pub(crate) fn srgb_encode(linear: Vec3) -> Vec3 {
     let encode = |x: f32| {
         if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
     };
@@ -28,14 +28,14 @@ pub fn srgb_encode(linear: Vec3) -> Vec3 {
 
 /// A unit vector on the unfolded octahedron, both coordinates in −1 … 1 (`lib/octahedral.glsl`).
 #[must_use]
-pub fn octahedral_encode(direction: Vec3) -> Vec2 {
+pub(crate) fn octahedral_encode(direction: Vec3) -> Vec2 {
     let square = Vec2::new(direction.x, direction.y) / direction.abs().element_sum();
     if direction.z >= 0.0 { square } else { (Vec2::ONE - Vec2::new(square.y, square.x).abs()) * sign_not_zero(square) }
 }
 
 /// The point of the octahedron: its components' absolute values sum to one (`lib/octahedral.glsl`).
 #[must_use]
-pub fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
+pub(crate) fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
     let z = 1.0 - square.x.abs() - square.y.abs();
     let folded = square - sign_not_zero(square) * (-z).max(0.0);
     folded.extend(z)
@@ -43,13 +43,13 @@ pub fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
 
 /// The unit vector of [`octahedral_encode`]'s coordinates (`lib/octahedral.glsl`).
 #[must_use]
-pub fn octahedral_decode(square: Vec2) -> Vec3 {
+pub(crate) fn octahedral_decode(square: Vec2) -> Vec3 {
     octahedral_decode_unnormalized(square).normalize()
 }
 
 /// A unit vector in 2 × snorm16, x in the low half (`lib/octahedral.glsl`).
 #[must_use]
-pub fn pack_direction(direction: Vec3) -> u32 {
+pub(crate) fn pack_direction(direction: Vec3) -> u32 {
     let square = octahedral_encode(direction);
     let snorm16 = |x: f32| u32::from(((x.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
     snorm16(square.y) << 16 | snorm16(square.x)
@@ -57,14 +57,14 @@ pub fn pack_direction(direction: Vec3) -> u32 {
 
 /// The inverse of [`pack_direction`] (`lib/octahedral.glsl`).
 #[must_use]
-pub fn unpack_direction(bits: u32) -> Vec3 {
+pub(crate) fn unpack_direction(bits: u32) -> Vec3 {
     let snorm16 = |half: u32| (f32::from((half as u16).cast_signed()) / 32767.0).max(-1.0);
     octahedral_decode(Vec2::new(snorm16(bits & 0xFFFF), snorm16(bits >> 16)))
 }
 
 /// A unit vector in the bits of a positive, normal, finite float (`lib/octahedral.glsl`).
 #[must_use]
-pub fn pack_direction_in_float(direction: Vec3) -> f32 {
+pub(crate) fn pack_direction_in_float(direction: Vec3) -> f32 {
     let square = octahedral_encode(direction);
     let x = (32768 + (square.x * 32767.0).round() as i32).cast_unsigned();
     let y = (16384 + (square.y * 16255.0).round() as i32).cast_unsigned();
@@ -73,7 +73,7 @@ pub fn pack_direction_in_float(direction: Vec3) -> f32 {
 
 /// The inverse of [`pack_direction_in_float`], not of unit length (`lib/octahedral.glsl`).
 #[must_use]
-pub fn unpack_direction_in_float_unnormalized(word: f32) -> Vec3 {
+pub(crate) fn unpack_direction_in_float_unnormalized(word: f32) -> Vec3 {
     let bits = word.to_bits();
     octahedral_decode_unnormalized(Vec2::new(
         ((bits & 0xFFFF) as f32 - 32768.0) / 32767.0,
@@ -83,7 +83,7 @@ pub fn unpack_direction_in_float_unnormalized(word: f32) -> Vec3 {
 
 /// The cell of a Morton index (`lib/morton.glsl`).
 #[must_use]
-pub fn morton_decode(index: u32) -> IVec2 {
+pub(crate) fn morton_decode(index: u32) -> IVec2 {
     let even_bits = |bits: u32| (0..16).fold(0, |even, i| even | (bits >> (2 * i) & 1) << i);
     UVec2::new(even_bits(index), even_bits(index >> 1)).as_ivec2()
 }
@@ -92,7 +92,7 @@ pub fn morton_decode(index: u32) -> IVec2 {
 ///
 /// Valid while `extent` is at most a quarter: the arc tangent is a series.
 #[must_use]
-pub fn solid_angle_of_texel(tangent: Vec2, extent: f32) -> f32 {
+pub(crate) fn solid_angle_of_texel(tangent: Vec2, extent: f32) -> f32 {
     let low = tangent - 0.5 * extent;
     let high = tangent + 0.5 * extent;
     let low_high = Vec2::new(low.x, high.y);
@@ -112,28 +112,28 @@ pub fn solid_angle_of_texel(tangent: Vec2, extent: f32) -> f32 {
 
 /// glTF's angular falloff of a spot light (`lib/lights.glsl`).
 #[must_use]
-pub fn spot_attenuation(cosine: f32, scale: f32, offset: f32) -> f32 {
+pub(crate) fn spot_attenuation(cosine: f32, scale: f32, offset: f32) -> f32 {
     let attenuation = (cosine * scale + offset).clamp(0.0, 1.0);
     attenuation * attenuation
 }
 
 /// The scale and offset of [`spot_attenuation`] for the cones' half angles in radians, as KHR_lights_punctual proposes.
 #[must_use]
-pub fn spot_scale_and_offset(inner_angle: f32, outer_angle: f32) -> (f32, f32) {
+pub(crate) fn spot_scale_and_offset(inner_angle: f32, outer_angle: f32) -> (f32, f32) {
     let scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
     (scale, -outer_angle.cos() * scale)
 }
 
 /// The window that takes a light with a range to zero at that range; 0 is no range (`lib/lights.glsl`).
 #[must_use]
-pub fn range_window(distance: f32, range: f32) -> f32 {
+pub(crate) fn range_window(distance: f32, range: f32) -> f32 {
     let ratio = if range > 0.0 { distance / range } else { 0.0 };
     (1.0 - ratio.powi(4)).clamp(0.0, 1.0)
 }
 
 /// Number of the largest component: 0 … 5 for +x, −x, +y, −y, +z, −z (`lib/lights.glsl`).
 #[must_use]
-pub fn major_axis_face(v: Vec3) -> u32 {
+pub(crate) fn major_axis_face(v: Vec3) -> u32 {
     let size = v.abs();
     let axis = if size.x >= size.y && size.x >= size.z {
         0
@@ -147,7 +147,7 @@ pub fn major_axis_face(v: Vec3) -> u32 {
 
 /// What scatters at a point of a surface (`Surface` of `lib/brdf.glsl`, without the position and the triangle's normal).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scatterer {
+pub(crate) struct Scatterer {
     /// Unit shading normal on the viewer's side.
     pub normal: Vec3,
     /// Albedo of the diffuse lobe.
@@ -162,20 +162,20 @@ pub struct Scatterer {
 
 /// Schlick's Fresnel reflectance (`lib/brdf.glsl`).
 #[must_use]
-pub fn schlick_fresnel(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
+pub(crate) fn schlick_fresnel(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     f0 + (Vec3::splat(f90) - f0) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
 }
 
 /// The diffuse lobe under its specular layer, in 1/sr (`lib/brdf.glsl`).
 #[must_use]
-pub fn diffuse_brdf(surface: &Scatterer, v_dot_h: f32) -> Vec3 {
+pub(crate) fn diffuse_brdf(surface: &Scatterer, v_dot_h: f32) -> Vec3 {
     let fresnel = schlick_fresnel(surface.f0, surface.f90, v_dot_h).max_element();
     surface.diffuse_albedo * (FRAC_1_PI * (1.0 - fresnel))
 }
 
 /// GGX with Smith's height-correlated masking and Schlick's Fresnel, in 1/sr (`lib/brdf.glsl`).
 #[must_use]
-pub fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+pub(crate) fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
     let middle = (to_light + to_eye).try_normalize().unwrap_or(surface.normal);
     let n_dot_l = surface.normal.dot(to_light).max(1e-4);
     let n_dot_v = surface.normal.dot(to_eye).max(1e-4);
@@ -192,20 +192,20 @@ pub fn specular_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 
 
 /// Both lobes, in 1/sr (`lib/brdf.glsl`).
 #[must_use]
-pub fn surface_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
+pub(crate) fn surface_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) -> Vec3 {
     let middle = (to_light + to_eye).try_normalize().unwrap_or(surface.normal);
     diffuse_brdf(surface, to_eye.dot(middle)) + specular_brdf(surface, to_light, to_eye)
 }
 
 /// What a virtual point light reflects and a receiver of indirect light answers with (`lib/brdf.glsl`).
 #[must_use]
-pub fn indirect_diffuse_albedo(diffuse_albedo: Vec3, f0: Vec3, f90: f32) -> Vec3 {
+pub(crate) fn indirect_diffuse_albedo(diffuse_albedo: Vec3, f0: Vec3, f90: f32) -> Vec3 {
     diffuse_albedo * (1.0 - (f0 + (Vec3::splat(f90) - f0) / 21.0).max_element())
 }
 
 /// The two texels of a virtual point light: reflected flux in W, the area in m² that it stands for (`lib/vpl.glsl`).
 #[must_use]
-pub fn pack_vpl(position_rs: Vec3, normal: Vec3, flux: Vec3, area: f32) -> [Vec4; 2] {
+pub(crate) fn pack_vpl(position_rs: Vec3, normal: Vec3, flux: Vec3, area: f32) -> [Vec4; 2] {
     let word = pack_direction_in_float(normal);
     let length = unpack_direction_in_float_unnormalized(word).length();
     [position_rs.extend((area * FRAC_1_PI).max(1e-16)), (flux * (FRAC_1_PI / length)).extend(word)]
@@ -213,13 +213,13 @@ pub fn pack_vpl(position_rs: Vec3, normal: Vec3, flux: Vec3, area: f32) -> [Vec4
 
 /// The reflected flux, in W, of a virtual point light's two texels: the inverse of what [`pack_vpl`] did to it.
 #[must_use]
-pub fn vpl_flux(vpl: [Vec4; 2]) -> Vec3 {
+pub(crate) fn vpl_flux(vpl: [Vec4; 2]) -> Vec3 {
     vpl[1].xyz() * (PI * unpack_direction_in_float_unnormalized(vpl[1].w).length())
 }
 
 /// Irradiance in W/m² at a point from a virtual point light, a small Lambertian disc (`lib/vpl.glsl`).
 #[must_use]
-pub fn vpl_irradiance(vpl: [Vec4; 2], position_rs: Vec3, normal: Vec3) -> Vec3 {
+pub(crate) fn vpl_irradiance(vpl: [Vec4; 2], position_rs: Vec3, normal: Vec3) -> Vec3 {
     let difference = vpl[0].xyz() - position_rs;
     let squared = difference.length_squared() + 1e-20;
     let light_normal = unpack_direction_in_float_unnormalized(vpl[1].w);
@@ -231,21 +231,21 @@ pub fn vpl_irradiance(vpl: [Vec4; 2], position_rs: Vec3, normal: Vec3) -> Vec3 {
 ///
 /// Returns shading normal, geometric normal, albedo and roughness.
 #[must_use]
-pub fn unpack_surface(texel: UVec4) -> (Vec3, Vec3, Vec3, f32) {
+pub(crate) fn unpack_surface(texel: UVec4) -> (Vec3, Vec3, Vec3, f32) {
     let albedo = Vec3::new(half_to_float(texel.z), half_to_float(texel.z >> 16), half_to_float(texel.w));
     (unpack_direction(texel.x), unpack_direction(texel.y), albedo, (texel.w >> 16) as f32 / 65535.0)
 }
 
 /// Narkowicz's fit of the ACES curve (`lib/tonemap.glsl`).
 #[must_use]
-pub fn tonemap_aces(color: Vec3) -> Vec3 {
+pub(crate) fn tonemap_aces(color: Vec3) -> Vec3 {
     let x = color.min(Vec3::splat(1e4));
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }
 
 /// Drago's display luminance over scene luminance, both in units of the adaptation luminance (`lib/tonemap.glsl`).
 #[must_use]
-pub fn tonemap_drago_scale(scaled_luminance: f32, scaled_maximum: f32, bias: f32) -> f32 {
+pub(crate) fn tonemap_drago_scale(scaled_luminance: f32, scaled_maximum: f32, bias: f32) -> f32 {
     let l = scaled_luminance.max(1e-6);
     let m = scaled_maximum.max(l);
     let exponent = bias.ln() / 0.5_f32.ln();

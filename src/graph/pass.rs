@@ -282,6 +282,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Runs as many groups as the three words at `index` of `arguments` say.
+    #[allow(dead_code, reason = "lists of the methods to come")]
     pub(crate) fn threads_indirect(mut self, arguments: BufferRef<u32>, index: usize) {
         self.pass.others.push(arguments.access(BufferUse::Indirect));
         self.graph.resources[arguments.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
