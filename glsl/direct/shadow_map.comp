@@ -17,8 +17,8 @@ layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform usampler2D surface;
 layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) readonly buffer Lights { Light lights[]; };
-layout(set = 0, binding = 5) readonly buffer Views { LightView views[]; };
+layout(set = 0, binding = 4) uniform usamplerBuffer lights;
+layout(set = 0, binding = 5) uniform usamplerBuffer views;
 layout(set = 0, binding = 6) uniform sampler2D light_depth;
 layout(set = 0, binding = 7, rgba32f) writeonly uniform image2D direct;
 
@@ -37,12 +37,17 @@ vec3 reflected_radiance(Surface point, vec3 to_eye, Light light) {
     }
     float visibility = 1.0;
     if (light.view_count != 0u) {
-        uint view = view_towards(light, views[light.first_view], -illumination.to_light);
+        LightView view = load_view(views, int(light.first_view));
+        uint seeing = view_towards(light, view, -illumination.to_light);
+        if (seeing != light.first_view) {
+            view = load_view(views, int(seeing));
+        }
         visibility = light_visibility(
-            light_depth, views[view], point.position_rs, point.geometric_normal,
+            light_depth, view, point.position_rs, point.geometric_normal,
             ShadowFilter(push.normal_offset, push.filter_radius));
     }
-    return surface_brdf(point, illumination.to_light, to_eye) * illumination.irradiance * (cosine * visibility);
+    vec3 brdf = push.has_specular != 0u ? surface_brdf(point, illumination.to_light, to_eye) : point.diffuse_albedo * INVERSE_PI;
+    return brdf * illumination.irradiance * (cosine * visibility);
 }
 
 void main() {
@@ -58,8 +63,8 @@ void main() {
         vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 to_eye = direction_to_eye(camera, position_rs);
-        for (uint i = 0u; i < push.light_count; ++i) {
-            radiance += reflected_radiance(point, to_eye, lights[i]);
+        for (int i = 0; i < int(push.light_count); ++i) {
+            radiance += reflected_radiance(point, to_eye, load_light(lights, i));
         }
     }
     imageStore(direct, pixel, vec4(radiance, 1.0));

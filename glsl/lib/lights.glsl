@@ -42,6 +42,7 @@ struct LightView {
     ivec2 rect_origin;      // texels in the atlas
     ivec2 rect_size;
     uint light;
+    uint reserved;          // fills the last of eleven vec4
 };
 
 // The atlas cut into squares of 16x16 texels, listed view by view, in Morton order inside a view.
@@ -49,6 +50,34 @@ struct LightTile {
     ivec2 origin;  // texels in the atlas
     uint view;
 };
+
+// ---- the two lists as texel buffers (rgba32ui), which a CPU driver reads several times faster than structs in storage buffers
+
+Light load_light(usamplerBuffer lights, int index) {
+    uvec4 a = texelFetch(lights, 4 * index);
+    uvec4 b = texelFetch(lights, 4 * index + 1);
+    uvec4 c = texelFetch(lights, 4 * index + 2);
+    uvec4 d = texelFetch(lights, 4 * index + 3);
+    return Light(
+        uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), uintBitsToFloat(c.w),
+        uintBitsToFloat(d.x), uintBitsToFloat(d.y), uintBitsToFloat(d.z), d.w);
+}
+
+// Without `view_projection`, which shading does not need.
+LightView load_view(usamplerBuffer views, int index) {
+    int first = 11 * index;
+    uvec4 origin = texelFetch(views, first + 4);
+    uvec4 right = texelFetch(views, first + 5);
+    uvec4 down = texelFetch(views, first + 6);
+    uvec4 forward = texelFetch(views, first + 7);
+    uvec4 tangents = texelFetch(views, first + 8);
+    uvec4 place = texelFetch(views, first + 9);
+    uvec4 last = texelFetch(views, first + 10);
+    return LightView(
+        mat4(0.0), uintBitsToFloat(origin.xyz), uintBitsToFloat(origin.w), uintBitsToFloat(right.xyz), uintBitsToFloat(right.w),
+        uintBitsToFloat(down.xyz), uintBitsToFloat(down.w), uintBitsToFloat(forward.xyz), uintBitsToFloat(forward.w),
+        uintBitsToFloat(tangents.xy), uintBitsToFloat(tangents.zw), uintBitsToFloat(place.xy), ivec2(place.zw), ivec2(last.xy), last.z, 0u);
+}
 
 // ---- emission
 

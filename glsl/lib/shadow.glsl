@@ -53,21 +53,26 @@ float light_visibility(sampler2D light_depth, LightView view, vec3 position_rs, 
     vec2 texel = (tangent - view.tangent_origin) / view.tangent_step - 0.5;
     vec2 whole = floor(texel);
     vec2 fraction = texel - whole;
-    ivec2 base = view.rect_origin + ivec2(clamp(whole, vec2(-1.0), vec2(view.rect_size)));
-    ivec2 last = view.rect_origin + view.rect_size - 1;
-    float behind = SURFACE_DEPTH_TEXELS * texel_width * (orthographic ? 1.0 / view.depth_range : view.near / (z * z));
     int radius = shadow_filter.radius;
+    // The guard band holds all taps of what the view is asked for; anything beyond is read at its rim.
+    vec2 rim = vec2(view.rect_size) - float(radius + 2);
+    vec2 first = vec2(view.rect_origin) + clamp(whole, vec2(float(radius)), rim) - float(radius);
+    vec2 to_uv = 1.0 / vec2(textureSize(light_depth, 0));
+    float behind = SURFACE_DEPTH_TEXELS * texel_width * (orthographic ? 1.0 / view.depth_range : view.near / (z * z));
     float lit = 0.0;
     float seen = 0.0;
-    for (int y = -radius; y <= radius + 1; ++y) {
-        float weight_y = y == -radius ? 1.0 - fraction.y : y == radius + 1 ? fraction.y : 1.0;
-        for (int x = -radius; x <= radius + 1; ++x) {
-            float weight_x = x == -radius ? 1.0 - fraction.x : x == radius + 1 ? fraction.x : 1.0;
-            float occluder = texelFetch(light_depth, clamp(base + ivec2(x, y), view.rect_origin, last), 0).x;
-            float plane = depth + dot(gradient, vec2(x, y) - fraction);
-            float weight = plane - occluder <= behind ? weight_x * weight_y : 0.0;
-            seen += weight;
-            lit += occluder <= max(plane, 0.0) ? weight : 0.0;
+    // Four texels a fetch: [(0,1), (1,1), (1,0), (0,0)].
+    for (int y = 0; y <= radius; ++y) {
+        for (int x = 0; x <= radius; ++x) {
+            vec2 corner = 2.0 * vec2(x, y);
+            vec4 occluders = textureGather(light_depth, (first + corner + 1.0) * to_uv);
+            vec2 offset = corner - float(radius) - fraction;
+            vec4 planes = depth + gradient.x * (offset.x + vec4(0.0, 1.0, 1.0, 0.0)) + gradient.y * (offset.y + vec4(1.0, 1.0, 0.0, 0.0));
+            vec2 weight_x = vec2(x == 0 ? 1.0 - fraction.x : 1.0, x == radius ? fraction.x : 1.0);
+            vec2 weight_y = vec2(y == 0 ? 1.0 - fraction.y : 1.0, y == radius ? fraction.y : 1.0);
+            vec4 weights = weight_x.xyyx * weight_y.yyxx * vec4(lessThanEqual(planes - occluders, vec4(behind)));
+            seen += dot(weights, vec4(1.0));
+            lit += dot(weights, vec4(lessThanEqual(occluders, max(planes, 0.0))));
         }
     }
     return seen > 0.0 ? lit / seen : 1.0;

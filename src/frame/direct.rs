@@ -23,14 +23,14 @@ pub(crate) fn shadow_map(
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
         specular: specular.sampled(),
-        lights: lights.lights.clone(),
-        views: lights.views.clone(),
+        lights: lights.light_texels.clone(),
+        views: lights.view_texels.clone(),
         light_depth: lights.depth.sampled(),
         direct: direct.write(),
         push: ShadowMapPush {
             light_count: lights.light_count,
             has_specular,
-            normal_offset: settings.normal_offset,
+            normal_offset: settings.normal_offset as f32,
             filter_radius: i32::try_from(settings.filter_radius).unwrap_or(0),
         },
     };

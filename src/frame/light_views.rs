@@ -7,7 +7,7 @@ use ash::vk;
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::light_set::LightSet;
 use super::scene_data::{DrawnInstance, SceneData};
-use crate::graph::bindings::{ImageRef, ReadBuffer};
+use crate::graph::bindings::{ImageRef, ReadBuffer, TexelBuffer};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::shaders::{light_views, types};
 
@@ -17,6 +17,9 @@ pub(crate) struct LightViews {
     pub(crate) light_count: u32,
     pub(crate) lights: ReadBuffer<types::Light>,
     pub(crate) views: ReadBuffer<types::LightView>,
+    /// The same two lists as texels, for shading.
+    pub(crate) light_texels: TexelBuffer,
+    pub(crate) view_texels: TexelBuffer,
     /// Reverse-Z depth of each view in its rectangle.
     pub(crate) depth: ImageRef,
 }
@@ -46,6 +49,8 @@ pub(crate) fn light_views(
         light_count: lights.count() as u32,
         lights: lights.read(),
         views: views.read(),
+        light_texels: lights.texels(vk::Format::R32G32B32A32_UINT),
+        view_texels: views.texels(vk::Format::R32G32B32A32_UINT),
         depth: graph.image("light_views.depth", vk::Format::D32_SFLOAT, size),
     };
     let reflective = reflective.then(|| ReflectiveViews {

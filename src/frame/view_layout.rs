@@ -164,6 +164,7 @@ impl ViewShape {
             rect_origin: rect_origin.map(signed),
             rect_size: rect_size.map(signed),
             light: self.light,
+            reserved: 0,
         };
         LaidOutView { record, full_size: full }
     }

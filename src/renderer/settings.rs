@@ -252,7 +252,7 @@ pub struct ShadowSettings {
     /// Half width of the percentage-closer filter, in texels of the light view; 0 (one bilinear tap) to 4.
     pub filter_radius: u32,
     /// Offset of the receiver along its normal, in texel widths at the receiver; 0 to 16.
-    pub normal_offset: f32,
+    pub normal_offset: f64,
 }
 
 /// Options of the `rsm` diffuse method.
