@@ -97,11 +97,17 @@ pub struct Run {
     pub serialised_ms: Spread,
     /// GPU time of a frame in which nothing changed since the one before.
     pub unchanged_ms: Spread,
+    /// Host time of a whole frame made anew, from the call to the finished frame.
+    pub host_ms: Spread,
+    /// Host time of a frame in which nothing changed.
+    pub unchanged_host_ms: Spread,
     /// Host time of the very first frame.
     pub first_frame_ms: f64,
+    /// What of the first frame went into bringing the scene onto the device.
+    pub upload_ms: f64,
     /// Time spent creating pipelines, in all frames together.
     pub pipeline_ms: f64,
-    /// What the first frame took on the host beyond the median frame made anew: compilation by the driver, at creation
+    /// What the first frame took on the host beyond the upload and the median frame made anew: compilation by the driver, at creation
     /// of the pipelines or at their first use, and first allocations.
     pub compile_ms: f64,
     /// Host time of loading the scene.

@@ -105,10 +105,17 @@ pub fn rows(run: &Run) -> Vec<Row> {
     let unexplained = Row { ms: Some(run.unexplained_ms), ..Row::frame("unexplained") };
     rows.push(if unexplained_share.is_finite() { unexplained.share(unexplained_share) } else { unexplained });
     rows.push(Row::frame("serialised frame").spread(run.serialised_ms).text("barriers between all passes"));
-    rows.push(Row::frame("frame").spread(run.frame_ms).text("passes overlap as the driver likes"));
-    rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text("nothing changed since the last"));
+    rows.push(Row::frame("frame").spread(run.frame_ms).text(&format!(
+        "passes overlap as the driver likes; {} ms on the host",
+        units::milliseconds(run.host_ms.median)
+    )));
+    rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text(&format!(
+        "nothing changed since the last; {} ms on the host",
+        units::milliseconds(run.unchanged_host_ms.median)
+    )));
     let first = units::milliseconds(run.first_frame_ms);
-    let compile = format!("first frame {first} ms on the host, pipelines {} ms", units::milliseconds(run.pipeline_ms));
+    let (upload, pipelines) = (units::milliseconds(run.upload_ms), units::milliseconds(run.pipeline_ms));
+    let compile = format!("first frame {first} ms on the host, of it upload {upload} ms, pipelines {pipelines} ms");
     rows.push(Row { ms: Some(run.compile_ms), ..Row::frame("compile").text(compile) });
     rows.push(Row::frame("memory").text(memory(run)));
     rows.push(Row::frame("settings").text(settings(run)));

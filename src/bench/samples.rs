@@ -10,11 +10,13 @@ use crate::renderer::FrameTimings;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Samples {
     first_frame_ms: f64,
+    upload_ms: f64,
     pipeline_ms: f64,
     /// GPU and host time of whole frames made anew.
     frame_ms: Vec<f64>,
     host_ms: Vec<f64>,
     unchanged_ms: Vec<f64>,
+    unchanged_host_ms: Vec<f64>,
     serialised_ms: Vec<f64>,
     unexplained_ms: Vec<f64>,
     passes: Vec<PassSamples>,
@@ -50,6 +52,7 @@ impl Samples {
     /// The very first frame, which holds the driver's compilation.
     pub(crate) fn add_first(&mut self, timings: &FrameTimings) {
         self.first_frame_ms = timings.host_ms;
+        self.upload_ms = timings.upload_ms;
         self.add_warmup(timings);
     }
 
@@ -69,6 +72,7 @@ impl Samples {
     /// A frame in which nothing changed, timed as a whole.
     pub(crate) fn add_unchanged(&mut self, timings: &FrameTimings) {
         self.unchanged_ms.push(timings.gpu_ms);
+        self.unchanged_host_ms.push(timings.host_ms);
     }
 
     /// A frame made anew, timed pass by pass.
@@ -129,9 +133,12 @@ impl Samples {
             frame_ms: spread(&self.frame_ms),
             serialised_ms,
             unchanged_ms: spread(&self.unchanged_ms),
+            host_ms: spread(&self.host_ms),
+            unchanged_host_ms: spread(&self.unchanged_host_ms),
+            upload_ms: self.upload_ms,
             first_frame_ms: self.first_frame_ms,
             pipeline_ms: self.pipeline_ms,
-            compile_ms: (self.first_frame_ms - median(&self.host_ms).unwrap_or_default()).max(0.0),
+            compile_ms: (self.first_frame_ms - self.upload_ms - median(&self.host_ms).unwrap_or_default()).max(0.0),
             counts: counts.collect(),
             pieces: self.pieces(share),
             passes,

@@ -99,6 +99,8 @@ pub struct FrameTimings {
     pub gpu_ms: f64,
     /// Host time from the call to the finished frame, milliseconds, read-back included.
     pub host_ms: f64,
+    /// Of the host time: bringing what changed of the scene onto the device, milliseconds.
+    pub upload_ms: f64,
     /// Time spent creating pipelines in this frame, milliseconds; zero once they exist.
     pub pipeline_ms: f64,
     /// All passes in the order of their declaration, the skipped ones included.

@@ -54,6 +54,7 @@ impl Renderer {
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         let start = Instant::now();
         self.prepare(scene, request)?;
+        let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
         let mut graph = Graph::new(&mut self.store);
         let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
@@ -95,6 +96,7 @@ impl Renderer {
             timing: request.timing,
             gpu_ms: executed.gpu_ms,
             host_ms: start.elapsed().as_secs_f64() * 1e3,
+            upload_ms,
             pipeline_ms: executed.pipeline_ms,
             passes: executed.passes,
             memory_bytes,
