@@ -1,8 +1,9 @@
 //! Tone maps: linear radiance to 8-bit sRGB display values, on the host. The device's passes compute the same.
 //!
-//! `aces` and `drago` first expose the image: radiance is scaled so that its log-average luminance becomes
-//! [`KEY`] (Reinhard et al. 2002, eq. 1 and 2). So both give the same picture for a scene ten times as bright, and
-//! `linear` does not: it shows radiance 1 as white. All map [0, ∞) to [0, 1], ascending, and 0 to 0.
+//! `aces` first exposes the image: radiance is scaled so that its log-average luminance becomes [`KEY`] (Reinhard et
+//! al. 2002, eq. 1 and 2). `drago` takes radiance in units of the log-average luminance, as its paper does. So both give
+//! the same picture for a scene ten times as bright, and `linear` does not: it shows radiance 1 as white. All map
+//! [0, ∞) to [0, 1], ascending, and 0 to 0.
 
 use crate::renderer::{ColorImage, ToneMap};
 
@@ -70,14 +71,16 @@ pub fn aces(radiance: [f32; 3], adaptation: Adaptation) -> [f32; 3] {
 /// logarithm whose base slides from 2 in the shadows to 10 at the image's maximum, which becomes white. Channels keep
 /// their ratio to the luminance and are clamped to [0, 1].
 pub fn drago(radiance: [f32; 3], adaptation: Adaptation) -> [f32; 3] {
-    let luminance = sound_luminance(&radiance) * adaptation.exposure;
-    if luminance <= 0.0 || adaptation.max_luminance <= 0.0 {
+    // In units of the world adaptation luminance, the paper's word for the log-average.
+    let (unit, maximum) = (adaptation.exposure / KEY, adaptation.max_luminance / KEY);
+    let luminance = sound_luminance(&radiance) * unit;
+    if luminance <= 0.0 || maximum <= 0.0 {
         return [0.0; 3];
     }
-    let base = 2.0 + 8.0 * (luminance / adaptation.max_luminance).powf(DRAGO_BIAS.ln() / 0.5_f32.ln());
-    let white = 0.01 * DRAGO_DISPLAY_LUMINANCE / (adaptation.max_luminance + 1.0).log10();
+    let base = 2.0 + 8.0 * (luminance / maximum).powf(DRAGO_BIAS.ln() / 0.5_f32.ln());
+    let white = 0.01 * DRAGO_DISPLAY_LUMINANCE / (maximum + 1.0).log10();
     let displayed = white * luminance.ln_1p() / base.ln();
-    let scale = displayed / luminance * adaptation.exposure;
+    let scale = displayed / luminance * unit;
     radiance.map(|value| (sound(value) * scale).min(1.0))
 }
 
