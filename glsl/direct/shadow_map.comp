@@ -37,10 +37,10 @@ vec3 reflected_radiance(Surface point, vec3 to_eye, Light light) {
     }
     float visibility = 1.0;
     if (light.view_count != 0u) {
-        LightView view = load_view(views, int(light.first_view));
+        LightView view = load_view(views, light.first_view);
         uint seeing = view_towards(light, view, -illumination.to_light);
         if (seeing != light.first_view) {
-            view = load_view(views, int(seeing));
+            view = load_view(views, seeing);
         }
         visibility = light_visibility(
             light_depth, view, point.position_rs, point.geometric_normal,
@@ -63,7 +63,7 @@ void main() {
         vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 to_eye = direction_to_eye(camera, position_rs);
-        for (int i = 0; i < int(push.light_count); ++i) {
+        for (uint i = 0u; i < push.light_count; ++i) {
             radiance += reflected_radiance(point, to_eye, load_light(lights, i));
         }
     }

@@ -15,9 +15,9 @@ layout(location = 1) out vec4 vertex_color;
 layout(location = 2) flat out uint instance_index;
 
 void main() {
-    vec3 position_rs = vec4(position, 1.0) * instances[gl_InstanceIndex].object_to_render;
+    vec3 position_rs = vec4(position, 1.0) * load_transform(instances, gl_InstanceIndex);
     gl_Position = camera.view_projection * vec4(position_rs, 1.0);
     vertex_normal = normal;
-    vertex_color = (instances[gl_InstanceIndex].flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
+    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
     instance_index = gl_InstanceIndex;
 }

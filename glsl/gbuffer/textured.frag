@@ -7,7 +7,7 @@
 // One fragment of a textured primitive: its normals with the normal map's on top, and its scattering lobes from the material's factors
 // times its textures (glTF 2.0 appendix B, see lib/brdf.glsl).
 
-layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 // 1: a fragment whose alpha is below the material's cutoff is a hole.
 layout(constant_id = 1) const uint ALPHA_MASK = 0u;
@@ -24,7 +24,7 @@ vec3 mapped_normal(Instance instance, Material material, Normals normals, Texcoo
     if (!has_texture(material, MATERIAL_NORMAL_TEXTURE) || (instance.flags & INSTANCE_HAS_TANGENTS) == 0u) {
         return normals.vertex;
     }
-    vec3 texel = sample_texture(normal_texture, material_textures[instance.material].normal, texcoords).xyz * 2.0 - 1.0;
+    vec3 texel = sample_texture(normal_texture, load_texture_use(material_textures, instance.material, USE_NORMAL), texcoords).xyz * 2.0 - 1.0;
     texel.xy *= material.normal_scale;
     float mirror = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
     vec3 tangent = normalize_or(transform_direction(instance, vertex_tangent.xyz), vec3(0.0));
@@ -34,8 +34,8 @@ vec3 mapped_normal(Instance instance, Material material, Normals normals, Texcoo
 
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
-    Instance instance = instances[instance_index];
-    Material material = materials[instance.material];
+    Instance instance = load_instance(instances, instance_index);
+    Material material = load_material(materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     apply_base_color_texture(point, material, instance.material, texcoords);
     if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {

@@ -20,10 +20,10 @@ layout(location = 3) out vec4 vertex_tangent;
 layout(location = 4) out vec4 texcoords;
 
 void main() {
-    vec3 position_rs = vec4(position, 1.0) * instances[gl_InstanceIndex].object_to_render;
+    vec3 position_rs = vec4(position, 1.0) * load_transform(instances, gl_InstanceIndex);
     gl_Position = camera.view_projection * vec4(position_rs, 1.0);
     vertex_normal = normal;
-    vertex_color = (instances[gl_InstanceIndex].flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
+    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
     instance_index = gl_InstanceIndex;
     vertex_tangent = tangent;
     texcoords = vec4(texcoord0, texcoord1);

@@ -5,6 +5,6 @@
 
 #include "lib/scene.glsl"
 
-layout(set = 0, binding = 0) readonly buffer Instances { Instance instances[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer instances;
 
 #endif

@@ -53,7 +53,8 @@ struct LightTile {
 
 // ---- the two lists as texel buffers (rgba32ui), which a CPU driver reads several times faster than structs in storage buffers
 
-Light load_light(usamplerBuffer lights, int index) {
+Light load_light(usamplerBuffer lights, uint light) {
+    int index = int(light);
     uvec4 a = texelFetch(lights, 4 * index);
     uvec4 b = texelFetch(lights, 4 * index + 1);
     uvec4 c = texelFetch(lights, 4 * index + 2);
@@ -63,9 +64,16 @@ Light load_light(usamplerBuffer lights, int index) {
         uintBitsToFloat(d.x), uintBitsToFloat(d.y), uintBitsToFloat(d.z), d.w);
 }
 
+mat4 load_view_projection(usamplerBuffer views, uint index) {
+    int first = 11 * int(index);
+    return mat4(
+        uintBitsToFloat(texelFetch(views, first)), uintBitsToFloat(texelFetch(views, first + 1)),
+        uintBitsToFloat(texelFetch(views, first + 2)), uintBitsToFloat(texelFetch(views, first + 3)));
+}
+
 // Without `view_projection`, which shading does not need.
-LightView load_view(usamplerBuffer views, int index) {
-    int first = 11 * index;
+LightView load_view(usamplerBuffer views, uint index) {
+    int first = 11 * int(index);
     uvec4 origin = texelFetch(views, first + 4);
     uvec4 right = texelFetch(views, first + 5);
     uvec4 down = texelFetch(views, first + 6);

@@ -36,13 +36,34 @@ const uint INSTANCE_HAS_TANGENTS = 8u;
 struct Instance {
     mat3x4 object_to_render;  // its columns are the affine transform's rows: vec4(p, 1) * object_to_render
     vec3 cofactor_x;          // the columns of the linear part's cofactor matrix, (b×c, c×a, a×b) of its columns a, b, c,
-    vec3 cofactor_y;          // times any positive factor. It maps the cross product of two edges to that of the mapped edges:
-    vec3 cofactor_z;          // normals stay perpendicular under any scale and follow the winding under a mirror.
-    uint material;
+    uint material;            // times any positive factor. It maps the cross product of two edges to that of the mapped edges:
+    vec3 cofactor_y;          // normals stay perpendicular under any scale and follow the winding under a mirror.
     uint flags;
+    vec3 cofactor_z;
     uint first_index;         // of the primitive in the scene's index buffer
     int vertex_offset;        // added to every index
+    uvec3 reserved;           // fills the last of seven vec4
 };
+
+// The lists of instances, materials and texture uses are read as texel buffers (rgba32ui): a CPU driver gathers these several times
+// faster than it loads structs from storage buffers. A field that nobody uses costs no fetch.
+mat3x4 load_transform(usamplerBuffer instances, uint index) {
+    int first = 7 * int(index);
+    return mat3x4(
+        uintBitsToFloat(texelFetch(instances, first)), uintBitsToFloat(texelFetch(instances, first + 1)),
+        uintBitsToFloat(texelFetch(instances, first + 2)));
+}
+
+Instance load_instance(usamplerBuffer instances, uint index) {
+    int first = 7 * int(index);
+    uvec4 x = texelFetch(instances, first + 3);
+    uvec4 y = texelFetch(instances, first + 4);
+    uvec4 z = texelFetch(instances, first + 5);
+    uint vertex_offset = texelFetch(instances, first + 6).x;
+    return Instance(
+        load_transform(instances, index), uintBitsToFloat(x.xyz), x.w, uintBitsToFloat(y.xyz), y.w, uintBitsToFloat(z.xyz), z.w,
+        int(vertex_offset), uvec3(0u));
+}
 
 vec3 transform_normal(Instance instance, vec3 normal) {
     return normal.x * instance.cofactor_x + normal.y * instance.cofactor_y + normal.z * instance.cofactor_z;
@@ -76,15 +97,44 @@ struct Material {
     float normal_scale;
     float alpha_cutoff;     // below 0: opaque
     uint flags;
+    uvec2 reserved;         // fills the last of five vec4
 };
+
+Material load_material(usamplerBuffer materials, uint index) {
+    int first = 5 * int(index);
+    vec4 base_color = uintBitsToFloat(texelFetch(materials, first));
+    vec4 emissive = uintBitsToFloat(texelFetch(materials, first + 1));
+    vec4 specular = uintBitsToFloat(texelFetch(materials, first + 2));
+    vec4 factors = uintBitsToFloat(texelFetch(materials, first + 3));
+    uvec4 last = texelFetch(materials, first + 4);
+    return Material(
+        base_color, emissive.xyz, emissive.w, specular.xyz, specular.w, factors.x, factors.y, factors.z, factors.w,
+        uintBitsToFloat(last.x), last.y, uvec2(0u));
+}
 
 // How a material reads one texture: uv' = (u_row·(uv,1), v_row·(uv,1)) in `layer` of the array that is bound for it.
 struct TextureUse {
     vec3 u_row;
-    vec3 v_row;
     uint layer;
+    vec3 v_row;
     uint texcoord;  // 0 or 1
 };
+
+// The order of a material's texture uses.
+const uint USE_BASE_COLOR = 0u;
+const uint USE_METALLIC_ROUGHNESS = 1u;
+const uint USE_NORMAL = 2u;
+const uint USE_EMISSIVE = 3u;
+const uint USE_SPECULAR = 4u;
+const uint USE_SPECULAR_COLOR = 5u;
+const uint USE_TRANSMISSION = 6u;
+
+TextureUse load_texture_use(usamplerBuffer material_textures, uint material, uint use) {
+    int first = 14 * int(material) + 2 * int(use);
+    uvec4 u = texelFetch(material_textures, first);
+    uvec4 v = texelFetch(material_textures, first + 1);
+    return TextureUse(uintBitsToFloat(u.xyz), u.w, uintBitsToFloat(v.xyz), v.w);
+}
 
 // One a material, in the materials' order; only programs that read textures bind it.
 struct MaterialTextures {

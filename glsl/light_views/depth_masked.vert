@@ -15,7 +15,7 @@ layout(location = 2) flat out uint material_index;
 
 void main() {
     gl_Position = clip_position(position, gl_InstanceIndex);
-    vertex_alpha = (instances[gl_InstanceIndex].flags & INSTANCE_HAS_COLORS) != 0u ? color.a : 1.0;
+    vertex_alpha = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color.a : 1.0;
     texcoords = vec4(texcoord0, texcoord1);
-    material_index = instances[gl_InstanceIndex].material;
+    material_index = load_instance(instances, gl_InstanceIndex).material;
 }

@@ -6,20 +6,20 @@
 
 // One texel of a reflective light view, on a primitive without textures: its normal and reflected flux in W (light_views/targets.glsl).
 
-layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
 layout(location = 2) flat in uint instance_index;
 
 void main() {
-    Instance instance = instances[instance_index];
-    Material material = materials[instance.material];
+    Instance instance = load_instance(instances, instance_index);
+    Material material = load_material(materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     Lobes lobes = lobes_of_material(material, point);
     vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
 
-    LightView view = views[push.view_index];
+    LightView view = load_view(views, push.view_index);
     light_normal = pack_direction(normal);
-    light_flux = reflected_flux(lights[view.light], view, gl_FragCoord, normal, lobes, point.transmission);
+    light_flux = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
 }

@@ -15,6 +15,6 @@ layout(location = 2) flat out uint instance_index;
 void main() {
     gl_Position = clip_position(position, gl_InstanceIndex);
     vertex_normal = normal;
-    vertex_color = (instances[gl_InstanceIndex].flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
+    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
     instance_index = gl_InstanceIndex;
 }

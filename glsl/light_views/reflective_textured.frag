@@ -7,7 +7,7 @@
 
 // One texel of a reflective light view, on a textured primitive: its normal and reflected flux in W (light_views/targets.glsl).
 
-layout(set = 0, binding = 1) readonly buffer Materials { Material materials[]; };
+layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 // 1: a fragment whose alpha is below the material's cutoff is a hole.
 layout(constant_id = 1) const uint ALPHA_MASK = 0u;
@@ -19,8 +19,8 @@ layout(location = 3) in vec4 texcoord_sets;
 
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
-    Instance instance = instances[instance_index];
-    Material material = materials[instance.material];
+    Instance instance = load_instance(instances, instance_index);
+    Material material = load_material(materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     apply_base_color_texture(point, material, instance.material, texcoords);
     if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {
@@ -30,7 +30,7 @@ void main() {
     Lobes lobes = lobes_of_material(material, point);
     vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
 
-    LightView view = views[push.view_index];
+    LightView view = load_view(views, push.view_index);
     light_normal = pack_direction(normal);
-    light_flux = reflected_flux(lights[view.light], view, gl_FragCoord, normal, lobes, point.transmission);
+    light_flux = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
 }

@@ -18,7 +18,7 @@ layout(location = 3) out vec4 texcoords;
 void main() {
     gl_Position = clip_position(position, gl_InstanceIndex);
     vertex_normal = normal;
-    vertex_color = (instances[gl_InstanceIndex].flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
+    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
     instance_index = gl_InstanceIndex;
     texcoords = vec4(texcoord0, texcoord1);
 }

@@ -12,7 +12,7 @@
 #include "lib/octahedral.glsl"
 #include "lib/solid_angle.glsl"
 
-layout(set = 0, binding = 6) readonly buffer Lights { Light lights[]; };
+layout(set = 0, binding = 6) uniform usamplerBuffer lights;
 
 layout(location = 0) out uint light_normal;  // r32ui: the triangle's normal on the light's side, pack_direction()
 layout(location = 1) out vec4 light_flux;    // rgba16f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly

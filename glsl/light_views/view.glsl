@@ -3,11 +3,11 @@
 #include "geometry/instances.glsl"
 #include "lib/lights.glsl"
 
-layout(set = 0, binding = 5) readonly buffer Views { LightView views[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer views;
 
 layout(push_constant, scalar) uniform Push { uint view_index; } push;
 
 vec4 clip_position(vec3 position, uint instance) {
-    vec3 position_rs = vec4(position, 1.0) * instances[instance].object_to_render;
-    return views[push.view_index].view_projection * vec4(position_rs, 1.0);
+    vec3 position_rs = vec4(position, 1.0) * load_transform(instances, instance);
+    return load_view_projection(views, push.view_index) * vec4(position_rs, 1.0);
 }

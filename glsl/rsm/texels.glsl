@@ -8,7 +8,7 @@
 const uint TILE_TEXELS = 256u;
 
 layout(set = 0, binding = 0) readonly buffer Tiles { LightTile tiles[]; };
-layout(set = 0, binding = 1) readonly buffer Views { LightView views[]; };
+layout(set = 0, binding = 1) uniform usamplerBuffer views;
 layout(set = 0, binding = 2) uniform sampler2D light_depth;
 layout(set = 0, binding = 3) uniform usampler2D light_normal;
 layout(set = 0, binding = 4) uniform sampler2D light_flux;

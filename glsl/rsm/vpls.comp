@@ -54,7 +54,7 @@ Quantile find_quantile(float target) {
     found.texel = ivec2(0);
     found.of_texel = vec4(0.0);
     LightTile tile = tiles[found.tile];
-    LightView view = views[tile.view];
+    LightView view = load_view(views, tile.view);
     float remaining = target - luminance(flux_prefix[found.tile].rgb);
     bool reached = false;
     [[dont_unroll]] for (uint index = 0u; index < TILE_TEXELS && !reached; ++index) {
@@ -116,7 +116,7 @@ void main() {
     float own = min(total / (float(push.vpl_count) * max(luminance(middle.of_texel.rgb), 1e-37)), 1.0);
     float area = max(share.a, own * middle.of_texel.a);
 
-    LightView view = views[tiles[middle.tile].view];
+    LightView view = load_view(views, tiles[middle.tile].view);
     float depth = texelFetch(light_depth, middle.texel, 0).x;
     vec2 tangent = tangent_of_texel(view, vec2(middle.texel) + 0.5);
     vpls[2u * k] = pack_vpl_position(position_of_texel(view, tangent, depth), area);

@@ -23,8 +23,8 @@ pub(crate) fn shadow_map(
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
         specular: specular.sampled(),
-        lights: lights.light_texels.clone(),
-        views: lights.view_texels.clone(),
+        lights: lights.lights.clone(),
+        views: lights.views.clone(),
         light_depth: lights.depth.sampled(),
         direct: direct.write(),
         push: ShadowMapPush {

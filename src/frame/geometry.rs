@@ -5,19 +5,22 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::scene_data::{DrawnInstance, SceneData, Stream};
-use crate::graph::bindings::{ReadBuffer, TexelBuffer};
+use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, DrawCall, DrawGroup, DrawList, Graph, hash_of};
 use crate::shaders::types;
 use crate::vulkan::{DepthState, RasterState, VertexAttribute, VertexLayout};
 
+/// The format of lists of structs that are read as texels (glsl/lib/scene.glsl).
+const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
+
 /// The scene's buffers as passes that draw it bind them.
 #[derive(Clone)]
 pub(crate) struct Geometry {
-    pub(crate) instances: ReadBuffer<types::Instance>,
-    pub(crate) materials: ReadBuffer<types::Material>,
+    pub(crate) instances: TexelBuffer,
+    pub(crate) materials: TexelBuffer,
     pub(crate) indices: TexelBuffer,
     pub(crate) positions: TexelBuffer,
-    pub(crate) material_textures: ReadBuffer<types::MaterialTextures>,
+    pub(crate) material_textures: TexelBuffer,
 }
 
 impl Geometry {
@@ -42,11 +45,11 @@ impl Geometry {
             Dependence::MATERIALS,
         );
         Geometry {
-            instances: instances.read(),
-            materials: materials.read(),
+            instances: instances.texels(RECORDS),
+            materials: materials.texels(RECORDS),
             indices: indices.texels(vk::Format::R32_UINT),
             positions: positions.texels(vk::Format::R32_SFLOAT),
-            material_textures: uses.read(),
+            material_textures: uses.texels(RECORDS),
         }
     }
 }

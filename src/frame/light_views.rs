@@ -7,7 +7,7 @@ use ash::vk;
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::light_set::LightSet;
 use super::scene_data::{DrawnInstance, SceneData};
-use crate::graph::bindings::{ImageRef, ReadBuffer, TexelBuffer};
+use crate::graph::bindings::{ImageRef, TexelBuffer};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::shaders::{light_views, types};
 
@@ -15,11 +15,8 @@ use crate::shaders::{light_views, types};
 #[derive(Clone)]
 pub(crate) struct LightViews {
     pub(crate) light_count: u32,
-    pub(crate) lights: ReadBuffer<types::Light>,
-    pub(crate) views: ReadBuffer<types::LightView>,
-    /// The same two lists as texels, for shading.
-    pub(crate) light_texels: TexelBuffer,
-    pub(crate) view_texels: TexelBuffer,
+    pub(crate) lights: TexelBuffer,
+    pub(crate) views: TexelBuffer,
     /// Reverse-Z depth of each view in its rectangle.
     pub(crate) depth: ImageRef,
 }
@@ -47,10 +44,8 @@ pub(crate) fn light_views(
     let views = graph.upload("light_views.views", &records, Dependence::LIGHTS);
     let made = LightViews {
         light_count: lights.count() as u32,
-        lights: lights.read(),
-        views: views.read(),
-        light_texels: lights.texels(vk::Format::R32G32B32A32_UINT),
-        view_texels: views.texels(vk::Format::R32G32B32A32_UINT),
+        lights: lights.texels(vk::Format::R32G32B32A32_UINT),
+        views: views.texels(vk::Format::R32G32B32A32_UINT),
         depth: graph.image("light_views.depth", vk::Format::D32_SFLOAT, size),
     };
     let reflective = reflective.then(|| ReflectiveViews {

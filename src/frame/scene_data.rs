@@ -295,8 +295,12 @@ fn upload_instances(
         let material = &scene.materials()[primitive.material.0];
         drawn.push(drawn_instance(instance, place, primitive.material.0, material, origin));
     }
-    let buffer =
-        buffer_with(device, "scene.instances", bytemuck::cast_slice(&records), vk::BufferUsageFlags::STORAGE_BUFFER)?;
+    let buffer = buffer_with(
+        device,
+        "scene.instances",
+        bytemuck::cast_slice(&records),
+        vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
+    )?;
     Ok((buffer, drawn))
 }
 
@@ -327,6 +331,7 @@ fn instance_record(instance: &Instance, primitive: &Primitive, place: Place, ori
             | flag(primitive.tangents.is_some(), HAS_TANGENTS),
         first_index: place.first_index,
         vertex_offset: place.vertex_offset,
+        reserved: [0; 3],
     }
 }
 
@@ -362,7 +367,7 @@ fn upload_materials(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene) 
     let records: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
     let uses: Vec<types::MaterialTextures> =
         scene.materials().iter().map(|material| arrays.uses_of(material)).collect();
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
     let sets = if scene.textures().is_empty() {
         None
     } else {
@@ -390,6 +395,7 @@ fn material_record(material: &Material) -> types::Material {
             Alpha::Mask { cutoff } => cutoff,
         },
         flags: u32::from(material.double_sided) | u32::from(material.unlit) << 1 | texture_kinds(material),
+        reserved: [0; 2],
     }
 }
 

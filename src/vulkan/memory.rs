@@ -95,7 +95,7 @@ pub(crate) struct Buffer {
 }
 
 impl Buffer {
-    /// A buffer of `size` bytes (at least 4, so that empty lists can be bound too).
+    /// A buffer of `size` bytes (at least one texel of 16, so that empty lists can be bound too).
     pub(crate) fn new(
         device: &Arc<Device>,
         name: &str,
@@ -103,7 +103,7 @@ impl Buffer {
         usage: vk::BufferUsageFlags,
         location: Location,
     ) -> Result<Buffer, VulkanError> {
-        let size = size.max(4).next_multiple_of(4);
+        let size = size.max(16).next_multiple_of(4);
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
         let raw = unsafe { device.raw.create_buffer(&info, None) }.called(&format!("vkCreateBuffer for {name}"))?;
