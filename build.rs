@@ -27,7 +27,7 @@ fn main() {
     }
 }
 
-fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
+pub(crate) fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
     let compiler = Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))?;
     let mut programs: BTreeMap<(String, String), Program> = BTreeMap::new();
     for path in shader_files(root)? {

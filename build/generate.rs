@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use crate::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
+use super::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
 
 /// A stage of a program, and where its SPIR-V lies.
 pub(crate) struct CompiledStage {
@@ -235,7 +235,7 @@ fn write_bindings(
 fn write_struct(
     out: &mut String,
     name: &str,
-    fields: &[crate::reflect::Field],
+    fields: &[super::reflect::Field],
     structs: &BTreeMap<String, Struct>,
     summary: &str,
 ) -> Result<(), String> {

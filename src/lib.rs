@@ -7,6 +7,8 @@ pub mod scene;
 
 mod diffuse;
 mod frame;
+#[cfg(test)]
+mod gpu_tests;
 mod graph;
 #[allow(unsafe_code, reason = "the one home of Vulkan calls")]
 mod vulkan;

@@ -15,9 +15,7 @@
 layout(set = 0, binding = 6) uniform usamplerBuffer lights;
 
 layout(location = 0) out uint light_normal;  // r32ui: the triangle's normal on the light's side, pack_direction()
-layout(location = 1) out vec4 light_flux;    // rgba16f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
-
-const float LARGEST_HALF = 65504.0;
+layout(location = 1) out vec4 light_flux;    // rgba32f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
 
 // W before any surface reflects it. `texel` and `depth` as gl_FragCoord has them.
 vec3 incident_flux(Light light, LightView view, vec2 texel, float depth) {
@@ -40,5 +38,5 @@ vec4 reflected_flux(Light light, LightView view, vec4 fragment, vec3 normal, Lob
     vec3 ray = ray_of_tangent(view, tangent_of_texel(view, fragment.xy));
     float reflectance = max3(schlick_fresnel(lobes.f0, lobes.f90, abs(dot(normal, normalize(ray)))));
     float mask = reflectance + (1.0 - reflectance) * transmission;
-    return vec4(min(reflected / view.flux_scale, vec3(LARGEST_HALF)), max3(incident) > 0.0 ? clamp(mask, 0.0, 1.0) : 0.0);
+    return vec4(reflected / view.flux_scale, max3(incident) > 0.0 ? clamp(mask, 0.0, 1.0) : 0.0);
 }

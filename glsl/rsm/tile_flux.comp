@@ -16,7 +16,7 @@ shared vec4 partial[64];
 void main() {
     uint self = gl_LocalInvocationIndex;
     for (uint tile = gl_WorkGroupID.x; tile < push.tile_count; tile += gl_NumWorkGroups.x) {
-        LightView view = views[tiles[tile].view];
+        LightView view = load_view(views, tiles[tile].view);
         vec4 sum = vec4(0.0);
         [[dont_unroll]] for (uint index = self; index < TILE_TEXELS; index += 64u) {
             sum += flux_and_area(view, texel_of_tile(tiles[tile], index));

@@ -26,7 +26,8 @@ pub(crate) struct LightViews {
 pub(crate) struct ReflectiveViews {
     /// The surface's own normal on the light's side, octahedral.
     pub(crate) normal: ImageRef,
-    /// Reflected flux over the view's flux scale; alpha is the specular mask.
+    /// Reflected flux over the view's flux scale; alpha is the specular mask. In 32 bits: some drivers truncate to half floats
+    /// instead of rounding, which takes 0.03 % off every light.
     pub(crate) flux: ImageRef,
 }
 
@@ -50,7 +51,7 @@ pub(crate) fn light_views(
     };
     let reflective = reflective.then(|| ReflectiveViews {
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
-        flux: graph.image("light_views.flux", vk::Format::R16G16B16A16_SFLOAT, size),
+        flux: graph.image("light_views.flux", vk::Format::R32G32B32A32_SFLOAT, size),
     });
     let draw_views: Vec<DrawView> =
         (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();

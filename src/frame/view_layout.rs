@@ -11,7 +11,7 @@ use crate::shaders::types;
 /// Sides of tiles and rectangles are multiples of this, so that a tile lies in one view.
 pub(crate) const TILE: u32 = 16;
 
-/// More texels than this in the atlas (of 16 bytes each) and the views are drawn at half their resolution.
+/// More texels than this in the atlas (of 24 bytes each) and the views are drawn at half their resolution.
 const MOST_TEXELS: u64 = 32 << 20;
 
 /// One view before it has a place in the atlas.

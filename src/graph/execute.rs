@@ -74,7 +74,7 @@ impl Graph<'_> {
         let result = self.execute(&verdicts, timing);
         if result.is_err() {
             // Whatever was recorded may not have run.
-            self.store.invalidate();
+            self.store.forget();
         }
         result
     }
@@ -242,7 +242,11 @@ impl Graph<'_> {
         let mut barriers = Barriers::default();
         let pass = &self.passes[index];
         let stages = pass.program.map_or(vk::PipelineStageFlags2::ALL_TRANSFER, pipeline_stages);
-        for (resource, mips, need) in merged_needs(pass, stages) {
+        let holds_depth = |id: usize| match &self.resources[id].body {
+            Body::Image(info) => info.aspect() != vk::ImageAspectFlags::COLOR,
+            _ => false,
+        };
+        for (resource, mips, need) in merged_needs(pass, stages, holds_depth) {
             let body = &self.resources[resource];
             match &body.body {
                 Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}
@@ -285,7 +289,7 @@ impl Graph<'_> {
             Work::Skipped(_) => {}
             Work::ClearImage { image, mips, value } => {
                 for mip in mips.clone() {
-                    recorder.clear_image(&self.memory_of_image(*image), mip, vk::ClearColorValue { float32: *value });
+                    recorder.clear_image(&self.memory_of_image(*image), mip, clear_value(*value));
                 }
             }
             Work::FillBuffer { buffer, word } => {
@@ -359,7 +363,8 @@ impl Graph<'_> {
                 match usage {
                     ImageUse::Sampled(sampler) => {
                         let sampler = self.store.pipelines.sampler(*sampler)?;
-                        Descriptor::Image { view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, sampler }
+                        let holds_depth = image.info.aspect() != vk::ImageAspectFlags::COLOR;
+                        Descriptor::Image { view, layout: layout_of(*usage, holds_depth), sampler }
                     }
                     _ => Descriptor::Image { view, layout: vk::ImageLayout::GENERAL, sampler: vk::Sampler::null() },
                 }
@@ -416,13 +421,15 @@ impl Graph<'_> {
          -> Result<(vk::ImageView, vk::Format, vk::ImageLayout), VulkanError> {
             let Access::Image { image, mips, usage } = access else { unreachable!("attachments are images") };
             let image = self.memory_of_image(*image);
+            // Attachments of an image that holds both depth and stencil share one view of both.
+            let aspect = if aspect == vk::ImageAspectFlags::COLOR { aspect } else { image.info.aspect() };
             let what = SubresourceView {
                 dim: ImageDim::D2,
                 mips: mips.start..mips.start + 1,
                 aspect,
                 format: image.info.format,
             };
-            Ok((image.view(&what)?, image.info.format, layout_of(*usage)))
+            Ok((image.view(&what)?, image.info.format, layout_of(*usage, true)))
         };
         let mut made = Attachments { extent: targets.extent, ..Attachments::default() };
         for color in &targets.colors {
@@ -432,12 +439,7 @@ impl Graph<'_> {
                 continue;
             };
             let (view, format, layout) = view(access, vk::ImageAspectFlags::COLOR)?;
-            let clear = clear.map(|value| vk::ClearValue {
-                color: match value {
-                    ClearColor::Float(float32) => vk::ClearColorValue { float32 },
-                    ClearColor::Uint(uint32) => vk::ClearColorValue { uint32 },
-                },
-            });
+            let clear = clear.map(|value| vk::ClearValue { color: clear_value(value) });
             made.colors.push(Some(Attachment { view, layout, clear, store: true }));
             made.formats.colors.push(format);
         }
@@ -565,10 +567,10 @@ impl Graph<'_> {
     fn provide_read_back(&mut self) -> Result<Vec<(u64, u64)>, VulkanError> {
         let mut places = Vec::new();
         let mut end = 0_u64;
-        for &id in &self.read_backs {
+        for &(id, mip) in &self.read_backs {
             let size = match &self.resources[id].body {
                 Body::Image(info) => {
-                    info.extent.iter().map(|&length| u64::from(length)).product::<u64>()
+                    info.extent.iter().map(|&length| u64::from((length >> mip).max(1))).product::<u64>()
                         * u64::from(info.layers)
                         * texel_bytes(info.format)
                 }
@@ -594,7 +596,7 @@ impl Graph<'_> {
 
     fn record_read_backs(&mut self, places: &[(u64, u64)]) {
         for (index, &(offset, size)) in places.iter().enumerate() {
-            let id = self.read_backs[index];
+            let (id, mip) = self.read_backs[index];
             let name = self.resources[id].name.clone();
             let read = Need {
                 stages: vk::PipelineStageFlags2::ALL_TRANSFER,
@@ -605,17 +607,18 @@ impl Graph<'_> {
             };
             let Some(target) = &self.store.read_back else { return };
             if let Some(stored) = self.store.images.get_mut(&name) {
-                let found = stored.states[0].transition(Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read });
+                let found = stored.states[mip as usize]
+                    .transition(Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read });
                 let image = stored.image.clone();
                 let barriers = found.map(|found| ImageBarrier {
                     image: &image,
-                    mip: 0,
+                    mip,
                     scope: Scope::FULL,
                     old_layout: found.old_layout,
                     new_layout: found.new_layout,
                 });
                 self.store.recorder.barriers(&Barriers { memory: None, images: barriers.into_iter().collect() });
-                self.store.recorder.read_image(&image, target, offset);
+                self.store.recorder.read_image(&image, mip, target, offset);
             } else if let Some(stored) = self.store.buffers.get_mut(&name) {
                 // A full barrier stands before the read-backs.
                 stored.state.transition(read);
@@ -654,6 +657,13 @@ impl Pass {
     }
 }
 
+fn clear_value(value: ClearColor) -> vk::ClearColorValue {
+    match value {
+        ClearColor::Float(float32) => vk::ClearColorValue { float32 },
+        ClearColor::Uint(uint32) => vk::ClearColorValue { uint32 },
+    }
+}
+
 fn resource_of(access: &Access) -> usize {
     match access {
         Access::Image { image, .. } => *image,
@@ -663,8 +673,10 @@ fn resource_of(access: &Access) -> usize {
 
 const READ_ONLY_DEPTH: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
-fn layout_of(usage: ImageUse) -> vk::ImageLayout {
+/// A depth image that is sampled is in the layout in which it can be tested against too.
+fn layout_of(usage: ImageUse, holds_depth: bool) -> vk::ImageLayout {
     match usage {
+        ImageUse::Sampled(_) if holds_depth => READ_ONLY_DEPTH,
         ImageUse::Sampled(_) => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
         ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => vk::ImageLayout::GENERAL,
         ImageUse::Color { .. } => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
@@ -675,11 +687,17 @@ fn layout_of(usage: ImageUse) -> vk::ImageLayout {
 }
 
 /// What each place that a pass touches demands; several uses of one place by one pass are merged.
-fn merged_needs(pass: &Pass, shaders: vk::PipelineStageFlags2) -> Vec<(usize, u32, Need)> {
+fn merged_needs(
+    pass: &Pass,
+    shaders: vk::PipelineStageFlags2,
+    holds_depth: impl Fn(usize) -> bool,
+) -> Vec<(usize, u32, Need)> {
     let mut merged: Vec<(usize, u32, Need)> = Vec::new();
     for access in pass.accesses() {
         let (resource, places, need) = match access {
-            Access::Image { image, mips, usage } => (*image, mips.clone(), image_need(*usage, shaders)),
+            Access::Image { image, mips, usage } => {
+                (*image, mips.clone(), image_need(*usage, shaders, holds_depth(*image)))
+            }
             Access::Buffer { buffer, usage } => (*buffer, 0..1, buffer_need(*usage, shaders)),
         };
         for place in places {
@@ -698,7 +716,7 @@ fn merged_needs(pass: &Pass, shaders: vk::PipelineStageFlags2) -> Vec<(usize, u3
     merged
 }
 
-fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2) -> Need {
+fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2, holds_depth: bool) -> Need {
     use vk::AccessFlags2 as A;
     use vk::PipelineStageFlags2 as S;
     let depth_stages = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
@@ -716,7 +734,7 @@ fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2) -> Need {
         ImageUse::DepthTest => (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ, false, false),
         ImageUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true, true),
     };
-    Need { stages, access, layout: layout_of(usage), writes, discards }
+    Need { stages, access, layout: layout_of(usage, holds_depth), writes, discards }
 }
 
 fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {

@@ -93,7 +93,8 @@ pub(crate) struct Graph<'s> {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
     wanted: Vec<Version>,
-    read_backs: Vec<usize>,
+    /// Images with their mip level; buffers with 0.
+    read_backs: Vec<(usize, u32)>,
 }
 
 impl<'s> Graph<'s> {
@@ -181,9 +182,9 @@ impl<'s> Graph<'s> {
     }
 
     /// Sets every texel of a colour image.
-    #[allow(dead_code, reason = "volumes of the methods to come start from it")]
-    pub(crate) fn clear_image(&mut self, name: &str, image: ImageRef, value: [f32; 4]) {
-        let bytes = bytemuck::bytes_of(&value).to_vec();
+    #[allow(dead_code, reason = "heads of per-pixel lists and grids of the methods to come start from it")]
+    pub(crate) fn clear_image(&mut self, name: &str, image: ImageRef, value: ClearColor) {
+        let bytes = format!("{value:?}").into_bytes();
         let work = Work::ClearImage { image: image.id, mips: image.mips.0..image.mips.1, value };
         let access = image.access(ImageUse::Clear);
         self.add_pass(Pass::transfer(name, access, bytes, work));
@@ -215,11 +216,13 @@ impl<'s> Graph<'s> {
         self.wanted.push(Version { place: (buffer.id, 0), key: self.resources[buffer.id].content[0].0 });
     }
 
-    /// Asks that the image be made and its first mip level copied to the host. Returns its number among the read-backs.
+    /// Asks that the image be made and its first mip level copied to the host; `image.mip(n)` copies level n. Returns its
+    /// number among the read-backs.
     pub(crate) fn read_back(&mut self, image: ImageRef) -> ReadBack {
-        self.want(image.mip(0));
+        let mip = image.mips.0;
+        self.want(image.mip(mip));
         self.resources[image.id].image_usage |= vk::ImageUsageFlags::TRANSFER_SRC;
-        self.read_backs.push(image.id);
+        self.read_backs.push((image.id, mip));
         ReadBack(self.read_backs.len() - 1)
     }
 
@@ -227,7 +230,7 @@ impl<'s> Graph<'s> {
     pub(crate) fn read_back_buffer<T>(&mut self, buffer: BufferRef<T>) -> ReadBack {
         self.want_buffer(buffer);
         self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
-        self.read_backs.push(buffer.id);
+        self.read_backs.push((buffer.id, 0));
         ReadBack(self.read_backs.len() - 1)
     }
 
@@ -242,6 +245,12 @@ impl<'s> Graph<'s> {
                 let (key, dependence) = self.resources[place.0].content[place.1 as usize];
                 if reads {
                     key.hash(&mut hasher);
+                    // The same work on an image or buffer of another size gives another result.
+                    match &self.resources[place.0].body {
+                        Body::Image(info) => info.hash(&mut hasher),
+                        Body::Buffer { bytes } => bytes.hash(&mut hasher),
+                        Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}
+                    }
                     pass.needs.reads.push(Version { place, key });
                     pass.dependence = pass.dependence | dependence;
                 }

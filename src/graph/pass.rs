@@ -63,10 +63,21 @@ pub(super) enum Draws {
 pub(super) enum Work {
     Skipped(String),
     Dispatch([u32; 3]),
-    DispatchIndirect { buffer: usize, offset: u64 },
+    #[allow(dead_code, reason = "photon and list passes of the methods to come")]
+    DispatchIndirect {
+        buffer: usize,
+        offset: u64,
+    },
     Draw(Draws),
-    ClearImage { image: usize, mips: Range<u32>, value: [f32; 4] },
-    FillBuffer { buffer: usize, word: u32 },
+    ClearImage {
+        image: usize,
+        mips: Range<u32>,
+        value: ClearColor,
+    },
+    FillBuffer {
+        buffer: usize,
+        word: u32,
+    },
 }
 
 /// Attachments of a raster pass and the values that they are cleared to.
@@ -154,10 +165,13 @@ impl Pass {
             Work::Dispatch(groups) => groups.hash(hasher),
             Work::Draw(Draws::Meshes(list)) => list.key.hash(hasher),
             Work::Draw(Draws::Vertices { vertices, instances }) => (vertices, instances).hash(hasher),
-            _ => {}
+            Work::Draw(Draws::Indirect { offset, count, .. }) => (offset, count).hash(hasher),
+            Work::DispatchIndirect { offset, .. } => offset.hash(hasher),
+            Work::Skipped(_) | Work::ClearImage { .. } | Work::FillBuffer { .. } => {}
         }
         if let Some((state, targets)) = &self.raster {
             state.hash(hasher);
+            targets.extent.hash(hasher);
             format!("{:?} {:?} {:?}", targets.colors, targets.depth, targets.stencil).hash(hasher);
         }
     }
@@ -225,7 +239,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
         }
     }
 
-    /// The depth attachment, written; `clear` as for colours.
+    /// The depth attachment, written; `clear` as for colours. Comes before [`PassBuilder::stencil`].
     pub(crate) fn depth(mut self, image: ImageRef, clear: Option<f32>) -> Self {
         let access = image.access(ImageUse::Depth { keep: clear.is_none() });
         self.pass.others.push(access.clone());
@@ -234,7 +248,8 @@ impl<'g, 's> PassBuilder<'g, 's> {
         self
     }
 
-    /// The stencil attachment; `clear` as for colours. Without clearing and without writes it is only tested.
+    /// The stencil attachment; `clear` as for colours. Without clearing and without writes it is only tested. Of an image
+    /// that holds depth too, the depth is kept, unless the pass clears it as its depth attachment.
     #[allow(dead_code, reason = "multi-resolution layers of the methods to come")]
     pub(crate) fn stencil(mut self, image: ImageRef, clear: Option<u32>) -> Self {
         let tests = self
@@ -243,8 +258,13 @@ impl<'g, 's> PassBuilder<'g, 's> {
             .as_ref()
             .and_then(|(state, _)| state.stencil)
             .is_some_and(|stencil| stencil.pass == vk::StencilOp::KEEP);
-        let usage =
-            if clear.is_none() && tests { ImageUse::DepthTest } else { ImageUse::Depth { keep: clear.is_none() } };
+        let clears_depth = self.targets().depth.as_ref().is_some_and(|(_, clear)| clear.is_some());
+        let keep = clear.is_none() || (image.info.aspect().contains(vk::ImageAspectFlags::DEPTH) && !clears_depth);
+        let usage = if clear.is_none() && tests && self.targets().depth.is_none() {
+            ImageUse::DepthTest
+        } else {
+            ImageUse::Depth { keep }
+        };
         let access = image.access(usage);
         self.pass.others.push(access.clone());
         self.targets().extent = [image.info.extent[0], image.info.extent[1]];
@@ -282,7 +302,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Runs as many groups as the three words at `index` of `arguments` say.
-    #[allow(dead_code, reason = "lists of the methods to come")]
+    #[allow(dead_code, reason = "photon and list passes of the methods to come")]
     pub(crate) fn threads_indirect(mut self, arguments: BufferRef<u32>, index: usize) {
         self.pass.others.push(arguments.access(BufferUse::Indirect));
         self.graph.resources[arguments.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;

@@ -84,6 +84,17 @@ impl Store {
         }
     }
 
+    /// Forgets all contents and how they were last used: after a frame that failed, what was recorded may not have run.
+    pub(super) fn forget(&mut self) {
+        self.invalidate();
+        for image in self.images.values_mut() {
+            image.states.fill(State::default());
+        }
+        for buffer in self.buffers.values_mut() {
+            buffer.state = State::default();
+        }
+    }
+
     /// The key of what the named image holds, if it has this shape.
     pub(super) fn image_key(&self, name: &str, info: &ImageInfo, mip: u32) -> Option<u64> {
         let stored = self.images.get(name).filter(|stored| stored.image.info == *info)?;

@@ -1,13 +1,13 @@
 //! Tone maps: linear radiance to 8-bit sRGB display values, on the host. The device's passes compute the same.
 //!
-//! `aces` first exposes the image: radiance is scaled so that its log-average luminance becomes [`KEY`] (Reinhard et
-//! al. 2002, eq. 1 and 2). `drago` takes radiance in units of the log-average luminance, as its paper does. So both give
-//! the same picture for a scene ten times as bright, and `linear` does not: it shows radiance 1 as white. All map
-//! [0, ∞) to [0, 1], ascending, and 0 to 0.
+//! `aces` first exposes the image: radiance is scaled so that its log-average luminance becomes [`KEY`] (Reinhard et al.
+//! 2002, eq. 1 and 2). `drago` takes the log-average as the luminance that the eye is adapted to, and luminances in units
+//! of it. So both give the same picture for a scene ten times as bright, and `linear` does not: it shows radiance 1 as
+//! white. All map [0, ∞) to [0, 1], ascending, and 0 to 0.
 
 use crate::renderer::{ColorImage, ToneMap};
 
-/// The display luminance of the scene's log-average: a mid-grey of 18 %.
+/// The luminance that `aces` exposes the scene's log-average to: a mid-grey of 18 %.
 pub const KEY: f32 = 0.18;
 
 /// Luminances below this share of the mean count as this share in the log-average, so that black pixels, whose
@@ -22,22 +22,22 @@ const DRAGO_DISPLAY_LUMINANCE: f32 = 100.0;
 /// What the tone maps need to know of the image as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Adaptation {
-    /// The factor that brings the log-average luminance to [`KEY`]; 0 for a black image.
-    pub exposure: f32,
-    /// The largest luminance, exposed.
+    /// The log-average luminance in W/(m² sr), see [`log_average_luminance`]; 0 for a black image.
+    pub log_average: f32,
+    /// The largest luminance in W/(m² sr).
     pub max_luminance: f32,
 }
 
 impl Adaptation {
     /// Measures an image. Values that are negative or not finite count as black.
     pub fn of(pixels: &[[f32; 3]]) -> Adaptation {
-        let average = log_average_luminance(pixels);
-        if average <= 0.0 {
-            return Adaptation::default();
-        }
-        let exposure = (f64::from(KEY) / average) as f32;
         let max_luminance = pixels.iter().map(sound_luminance).fold(0.0, f32::max);
-        Adaptation { exposure, max_luminance: exposure * max_luminance }
+        Adaptation { log_average: log_average_luminance(pixels) as f32, max_luminance }
+    }
+
+    /// `value` in units of the log-average; 0 in a black image.
+    fn relative(&self, value: f32) -> f32 {
+        if self.log_average > 0.0 { value / self.log_average } else { 0.0 }
     }
 }
 
@@ -62,26 +62,26 @@ pub fn linear(radiance: [f32; 3]) -> [f32; 3] {
 pub fn aces(radiance: [f32; 3], adaptation: Adaptation) -> [f32; 3] {
     radiance.map(|value| {
         // Beyond 10⁴ the curve is 1; the bound keeps the squares finite.
-        let x = (sound(value) * adaptation.exposure).min(1e4);
+        let x = (KEY * adaptation.relative(sound(value))).min(1e4);
         ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
     })
 }
 
 /// Adaptive logarithmic mapping (Drago, Myszkowski, Annen & Chiba 2003, eq. 4): luminance is compressed by a
-/// logarithm whose base slides from 2 in the shadows to 10 at the image's maximum, which becomes white. Channels keep
-/// their ratio to the luminance and are clamped to [0, 1].
+/// logarithm whose base slides from 2 in the shadows to 10 at the image's maximum, which becomes white. As in the paper,
+/// both are divided by the world adaptation luminance, the log-average, and by nothing else: no middle grey comes in.
+/// Channels keep their ratio to the luminance and are clamped to [0, 1].
 pub fn drago(radiance: [f32; 3], adaptation: Adaptation) -> [f32; 3] {
-    // In units of the world adaptation luminance, the paper's word for the log-average.
-    let (unit, maximum) = (adaptation.exposure / KEY, adaptation.max_luminance / KEY);
-    let luminance = sound_luminance(&radiance) * unit;
+    let luminance = adaptation.relative(sound_luminance(&radiance));
+    let maximum = adaptation.relative(adaptation.max_luminance);
     if luminance <= 0.0 || maximum <= 0.0 {
         return [0.0; 3];
     }
     let base = 2.0 + 8.0 * (luminance / maximum).powf(DRAGO_BIAS.ln() / 0.5_f32.ln());
     let white = 0.01 * DRAGO_DISPLAY_LUMINANCE / (maximum + 1.0).log10();
     let displayed = white * luminance.ln_1p() / base.ln();
-    let scale = displayed / luminance * unit;
-    radiance.map(|value| (sound(value) * scale).min(1.0))
+    let scale = displayed / luminance;
+    radiance.map(|value| (adaptation.relative(sound(value)) * scale).min(1.0))
 }
 
 /// Luminance of linear Rec.709 radiance.
@@ -186,8 +186,8 @@ mod tests {
         let even = [[0.5; 3]; 7];
         assert!((log_average_luminance(&even) - 0.5).abs() < 1e-6);
         let adaptation = Adaptation::of(&even);
-        assert!((adaptation.exposure * 0.5 - KEY).abs() < 1e-6);
-        assert!((adaptation.max_luminance - KEY).abs() < 1e-6);
+        assert!((adaptation.log_average - 0.5).abs() < 1e-6);
+        assert!((adaptation.max_luminance - 0.5).abs() < 1e-6);
         // Half black: the mean is 0.25, the floor 2.5e-5, the log-average their geometric mean with 0.5.
         let half = [[0.5; 3], [0.0; 3]];
         assert!((log_average_luminance(&half) - (0.5_f64 * 0.25e-4).sqrt()).abs() < 1e-6);
@@ -195,10 +195,13 @@ mod tests {
 
     #[test]
     fn curves_pass_through_published_points() {
-        let unexposed = Adaptation { exposure: 1.0, max_luminance: 9.0 };
+        let unexposed = Adaptation { log_average: 1.0, max_luminance: 9.0 };
         // Narkowicz's fit at 1: 2.54 / 3.16.
-        assert!((aces([1.0; 3], unexposed)[0] - 2.54 / 3.16).abs() < 1e-6);
+        assert!((aces([1.0 / KEY; 3], unexposed)[0] - 2.54 / 3.16).abs() < 1e-6);
         assert_eq!(aces([1e30; 3], unexposed), [1.0; 3]);
+        // Drago's eq. 4 at 1 of at most 9 adaptation luminances, where log10(9 + 1) = 1.
+        let expected = 2_f32.ln() / (2.0 + 8.0 * (1.0_f32 / 9.0).powf(0.85_f32.ln() / 0.5_f32.ln())).ln();
+        assert!((drago([1.0; 3], unexposed)[0] - expected).abs() < 1e-6);
         // Drago's mapping sends the maximum to white, and its base there is 10.
         assert!((drago([9.0; 3], unexposed)[1] - 1.0).abs() < 1e-5);
         let red = drago([1.0, 0.0, 0.0], unexposed);

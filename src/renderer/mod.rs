@@ -19,7 +19,7 @@
 //! ```
 
 mod context;
-mod declare;
+pub(crate) mod declare;
 mod error;
 mod frame;
 mod render;

@@ -9,6 +9,7 @@ use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Graph, GraphDescription, Store};
 use crate::scene::Scene;
+use crate::vulkan::VulkanError;
 
 /// Makes frames with one set of settings on one device.
 ///
@@ -134,14 +135,13 @@ impl Renderer {
             return Err(Error::EmptyFrame(width, height));
         }
         let device = self.store.device().clone();
+        let limit = device.limits().max_image_dimension2_d;
+        if width.max(height) > limit {
+            let (what, asked) = ("the frame".to_owned(), format!("{width}x{height} pixels"));
+            return Err(VulkanError::TooLarge { what, asked, limit: format!("{limit} a side") }.into());
+        }
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
-        self.lights = LightSet::update(
-            std::mem::take(&mut self.lights),
-            scene,
-            &data,
-            &self.settings,
-            device.limits().max_image_dimension2_d,
-        );
+        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
         Ok(())
     }

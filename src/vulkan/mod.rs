@@ -20,6 +20,8 @@ pub(crate) use device::Device;
 pub use error::VulkanError;
 pub use instance::Validation;
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
+#[allow(unused_imports, reason = "passes of the methods to come; tests use it already")]
+pub(crate) use pipelines::StencilState;
 pub(crate) use pipelines::{
     DepthState, Pipeline, Pipelines, RasterState, SamplerKind, TargetFormats, VertexAttribute, VertexLayout,
     pipeline_stages,

@@ -358,8 +358,14 @@ impl Recorder {
     }
 
     pub(crate) fn draw_indirect(&self, buffer: &Buffer, offset: u64, count: u32) {
-        // SAFETY: as above; the buffer holds `count` commands of four words at `offset`.
-        unsafe { self.device.raw.cmd_draw_indirect(self.commands, buffer.raw, offset, count, 16) };
+        let at_once = if self.device.survey.features.multi_draw_indirect == vk::TRUE { count } else { 1 };
+        let mut first = 0;
+        while first < count {
+            let offset = offset + u64::from(first) * 16;
+            // SAFETY: as above; the buffer holds `count` commands of four words at `offset`.
+            unsafe { self.device.raw.cmd_draw_indirect(self.commands, buffer.raw, offset, at_once, 16) };
+            first += at_once;
+        }
     }
 
     /// Fills `size` bytes at `offset` with a word.
@@ -394,9 +400,9 @@ impl Recorder {
         };
     }
 
-    /// Copies mip level 0 of every layer to `buffer`, rows close together.
-    pub(crate) fn read_image(&self, image: &Image, buffer: &Buffer, offset: u64) {
-        let regions = [copy_region(image, 0, 0, image.info.layers, offset)];
+    /// Copies one mip level of every layer to `buffer`, rows close together.
+    pub(crate) fn read_image(&self, image: &Image, mip: u32, buffer: &Buffer, offset: u64) {
+        let regions = [copy_region(image, mip, 0, image.info.layers, offset)];
         // SAFETY: as above; the image is in the transfer layout; the buffer is large enough.
         unsafe {
             self.device.raw.cmd_copy_image_to_buffer(

@@ -1,0 +1,85 @@
+//! `rsm` against its definition: the sum over the virtual point lights, in f64 on the host, at every pixel.
+
+use std::f64::consts::FRAC_1_PI;
+
+use glam::DVec3;
+
+use super::probe::{Pixel, Vpl, probe, slot, vpls};
+use super::scenes::{builtin, request, settings};
+use super::session::Session;
+use crate::frame::twins;
+use crate::renderer::Slot;
+
+const SIZE: [u32; 2] = [64, 48];
+
+/// Σ Φ/π · (n·−ω)⁺ (n_x·ω)⁺ / (d² + A/π), W/m².
+fn irradiance(vpls: &[Vpl], pixel: &Pixel) -> DVec3 {
+    let of_light = |vpl: &Vpl| {
+        let difference = vpl.texels[0].truncate().as_dvec3() - pixel.position_rs;
+        let squared = difference.length_squared();
+        let toward = difference / squared.sqrt();
+        let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).as_dvec3().normalize();
+        let cosines = normal.dot(-toward).max(0.0) * pixel.normal.dot(toward).max(0.0);
+        vpl.flux * (FRAC_1_PI * cosines / (squared + f64::from(vpl.texels[0].w)))
+    };
+    vpls.iter().map(of_light).sum()
+}
+
+#[test]
+fn a_pixel_gathers_the_sum_over_all_lights() {
+    let session = Session::open();
+    for (name, count) in
+        [("cornell-empty", "256"), ("cornell-empty", "1024"), ("cornell-panel", "100"), ("lights", "64")]
+    {
+        let scene = builtin(name);
+        let request = request(SIZE, scene.camera_view(None).expect("its camera"), &[]);
+        let settings = settings(&[("rsm.vpls", count)]);
+        let frame = probe(&session, &scene, &settings, &request, |graph, declared| {
+            let buffer = &declared.gbuffer;
+            vec![
+                graph.read_back(buffer.depth),
+                graph.read_back(buffer.surface),
+                slot(graph, declared, Slot::Diffuse),
+                vpls(graph, declared),
+            ]
+        });
+        let lights = frame.vpls(3);
+        let diffuse_alone = !scene.facts().specular;
+        let (mut worst, mut of_maximum) = (0.0_f64, 0.0_f64);
+        let found = frame.colors(2);
+        let maximum = found.iter().map(|radiance| radiance.max_element()).fold(0.0, f64::max);
+        assert!(maximum > 0.0);
+        for (pixel, found) in frame.pixels([0, 1], SIZE).iter().zip(&found) {
+            let Some(pixel) = pixel else {
+                assert_eq!(*found, DVec3::ZERO, "nothing is where nothing is");
+                continue;
+            };
+            assert!(diffuse_alone, "the test knows no specular layer");
+            let expected = pixel.albedo * FRAC_1_PI * irradiance(&lights, pixel);
+            let error = (*found - expected).abs();
+            worst = worst.max((error / expected.max(DVec3::splat(1e-3 * maximum))).max_element());
+            of_maximum = of_maximum.max(error.max_element() / maximum);
+        }
+        println!("{name}, {count} VPLs: error {worst:.2e} of the pixel, {of_maximum:.2e} of the image's maximum");
+        assert!(worst <= 1e-4, "{name}: {worst:.2e}");
+    }
+}
+
+/// The packing that shader and twin share.
+#[test]
+fn lights_lie_on_the_walls_and_face_the_room() {
+    let session = Session::open();
+    let scene = builtin("cornell-empty");
+    let bounds = scene.bounds().expect("a room");
+    let request = request([8, 8], scene.camera_view(None).expect("its camera"), &[]);
+    let frame = probe(&session, &scene, &settings(&[]), &request, |graph, declared| vec![vpls(graph, declared)]);
+    for vpl in frame.vpls(0) {
+        let point = vpl.texels[0].truncate().as_dvec3() + frame.origin;
+        let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).normalize();
+        let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+        assert!(normal[axis].abs() > 0.999, "every wall is straight, not {normal}");
+        let wall = if normal[axis] > 0.0 { bounds.min[axis] } else { bounds.max[axis] };
+        let off = (point[axis] - wall).abs();
+        assert!(off < 1e-3 * bounds.radius(), "a light {off} m off its wall at {point}, normal {normal}");
+    }
+}

@@ -1,0 +1,20 @@
+//! Tests on the device, one file a capability. Scenes are built in memory or come with irradia; results are compared with
+//! closed forms, with sums in f64 over what was read back, or with another run.
+//!
+//! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
+//! that outlives its renderer.
+
+mod direct;
+mod flux;
+mod gather;
+mod graph;
+mod invariance;
+mod light_share;
+mod probe;
+mod raster;
+mod repeats;
+mod robustness;
+mod scenes;
+mod session;
+mod skipping;
+mod tonemap;

@@ -1,0 +1,145 @@
+//! One frame with its intermediate results read back: light views, virtual point lights, G-buffer.
+
+use glam::{DVec3, UVec4, Vec3, Vec4};
+
+use super::session::Session;
+use crate::frame::light_set::LightSet;
+use crate::frame::scene_data::SceneData;
+use crate::frame::twins;
+use crate::graph::{Graph, ReadBack};
+use crate::renderer::declare::{Declared, declare};
+use crate::renderer::{FrameRequest, Settings, Slot, Timing};
+use crate::scene::Scene;
+use crate::shaders::types;
+
+/// The scene and its lights as the device has them.
+pub(super) struct Probe {
+    pub(super) set: LightSet,
+    pub(super) camera: types::Camera,
+    pub(super) origin: DVec3,
+    reads: Vec<Vec<u8>>,
+}
+
+/// Makes a frame and reads back what `wanted` names.
+pub(super) fn probe(
+    session: &Session,
+    scene: &Scene,
+    settings: &Settings,
+    request: &FrameRequest,
+    wanted: impl Fn(&mut Graph<'_>, &Declared) -> Vec<ReadBack>,
+) -> Probe {
+    let mut store = session.store();
+    let device = store.device().clone();
+    let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
+    let limit = device.limits().max_image_dimension2_d;
+    let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
+    let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
+    let mut graph = Graph::new(&mut store);
+    let declared = declare(&mut graph, scene, &data, &set, settings, request);
+    let wanted = wanted(&mut graph, &declared);
+    let mut executed = graph.run(Timing::Frame).expect("a frame");
+    let reads = wanted.into_iter().map(|read_back| executed.take(read_back)).collect();
+    Probe { set, camera, origin: data.origin, reads }
+}
+
+/// The flux image of the light views.
+pub(super) fn light_flux(graph: &mut Graph<'_>, declared: &Declared) -> ReadBack {
+    graph.read_back(declared.reflective.expect("some pass takes reflected flux").flux)
+}
+
+/// The virtual point lights of `rsm`.
+pub(super) fn vpls(graph: &mut Graph<'_>, declared: &Declared) -> ReadBack {
+    graph.read_back_buffer(declared.rsm.as_ref().expect("rsm runs").vpls)
+}
+
+pub(super) fn slot(graph: &mut Graph<'_>, declared: &Declared, slot: Slot) -> ReadBack {
+    graph.read_back(declared.slot(slot).expect("something fills the slot"))
+}
+
+fn word(bytes: &[u8]) -> u32 {
+    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+}
+
+/// A virtual point light as the shaders unpack it.
+pub(super) struct Vpl {
+    pub(super) texels: [Vec4; 2],
+    pub(super) flux: DVec3,
+}
+
+/// A pixel of the G-buffer.
+pub(super) struct Pixel {
+    pub(super) position_rs: DVec3,
+    pub(super) normal: DVec3,
+    pub(super) albedo: DVec3,
+}
+
+impl Probe {
+    pub(super) fn floats(&self, read: usize) -> Vec<f32> {
+        self.reads[read].chunks_exact(4).map(|bytes| f32::from_bits(word(bytes))).collect()
+    }
+
+    /// RGB of an image of four floats a texel.
+    pub(super) fn colors(&self, read: usize) -> Vec<DVec3> {
+        let floats = self.floats(read);
+        floats.chunks_exact(4).map(|texel| Vec3::new(texel[0], texel[1], texel[2]).as_dvec3()).collect()
+    }
+
+    /// What the texels of each light's views reflect, W. `read` is the flux image.
+    pub(super) fn flux_of_lights(&self, read: usize) -> Vec<DVec3> {
+        let mut sums = vec![DVec3::ZERO; self.set.lights.len()];
+        let bytes = &self.reads[read];
+        for view in self.set.atlas.views.iter().map(|view| view.record) {
+            let [[left, top], [width, height]] =
+                [view.rect_origin, view.rect_size].map(|pair| pair.map(i32::cast_unsigned));
+            let mut sum = DVec3::ZERO;
+            for y in top..top + height {
+                for x in left..left + width {
+                    let at = 16 * (y * self.set.atlas.size[0] + x) as usize;
+                    let channel = |index: usize| f64::from(f32::from_bits(word(&bytes[at + 4 * index..])));
+                    sum += DVec3::new(channel(0), channel(1), channel(2));
+                }
+            }
+            sums[view.light as usize] += sum * f64::from(view.flux_scale);
+        }
+        sums
+    }
+
+    pub(super) fn vpls(&self, read: usize) -> Vec<Vpl> {
+        let floats = self.floats(read);
+        let unpack = |texels: &[f32]| {
+            let texels = [Vec4::from_slice(&texels[..4]), Vec4::from_slice(&texels[4..])];
+            Vpl { texels, flux: twins::vpl_flux(texels).as_dvec3() }
+        };
+        floats.chunks_exact(8).map(unpack).collect()
+    }
+
+    /// The G-buffer's pixels, `None` where there is no surface. `reads` are its depth and its surface texels.
+    pub(super) fn pixels(&self, reads: [usize; 2], size: [u32; 2]) -> Vec<Option<Pixel>> {
+        let depths = self.floats(reads[0]);
+        let pixel = |(index, (depth, bytes)): (u32, (&f32, &[u8]))| {
+            let texel = UVec4::new(word(bytes), word(&bytes[4..]), word(&bytes[8..]), word(&bytes[12..]));
+            let (normal, _, albedo, _) = twins::unpack_surface(texel);
+            let ray = self.ray(index % size[0], index / size[0], size);
+            (*depth > 0.0).then(|| Pixel {
+                position_rs: self.eye() + ray * (f64::from(self.camera.near) / f64::from(*depth)),
+                normal: normal.as_dvec3(),
+                albedo: albedo.as_dvec3(),
+            })
+        };
+        (0..).zip(depths.iter().zip(self.reads[reads[1]].chunks_exact(16))).map(pixel).collect()
+    }
+
+    /// Where the camera is, in render space.
+    pub(super) fn eye(&self) -> DVec3 {
+        Vec3::from(self.camera.position_rs).as_dvec3()
+    }
+
+    /// Through the centre of a pixel, of length 1 along the camera's axis.
+    pub(super) fn ray(&self, x: u32, y: u32, size: [u32; 2]) -> DVec3 {
+        let axis = |axis: [f32; 3]| Vec3::from(axis).as_dvec3();
+        let ndc = |place: u32, side: u32| (2.0 * f64::from(place) + 1.0) / f64::from(side) - 1.0;
+        axis(self.camera.forward)
+            + ndc(x, size[0]) * axis(self.camera.right_scaled)
+            + ndc(y, size[1]) * axis(self.camera.down_scaled)
+    }
+}

@@ -1,0 +1,59 @@
+//! Two runs give the same bits: another renderer on another device handle, and the same one after forgetting everything.
+
+use super::scenes::{builtin, request, settings};
+use super::session::Session;
+use crate::renderer::{ColorImage, Frame, FrameRequest, Slot, ToneMap};
+use crate::scene::Scene;
+
+fn bits(image: &ColorImage) -> Vec<u32> {
+    image.pixels.iter().flatten().map(|channel| channel.to_bits()).collect()
+}
+
+/// Bit for bit, NaN included.
+fn assert_same(what: &str, first: &Frame, second: &Frame) {
+    let image = |frame: &Frame| bits(frame.image.as_ref().expect("it was asked for"));
+    assert_eq!(image(first), image(second), "{what}: the image");
+    for (slot, image) in &first.slots {
+        assert_eq!(bits(image), bits(&second.slots[slot]), "{what}: the slot {slot}");
+    }
+    assert_eq!(first.display, second.display, "{what}: the display values");
+}
+
+fn everything(scene: &Scene) -> FrameRequest {
+    let camera = scene.camera_view(None).expect("a view");
+    FrameRequest { tonemap: Some(ToneMap::Drago), ..request([72, 40], camera, &Slot::ALL) }
+}
+
+#[test]
+fn two_runs_give_the_same_bits() {
+    let settings = settings(&[("lights.resolution", "256")]);
+    for name in ["cornell-point", "cornell-spot", "cornell-panel", "textured", "lights", "sky"] {
+        let scene = || match name {
+            "sky" => {
+                let mut scene = builtin("plane");
+                scene.set_sky([0.4, 0.5, 0.9]);
+                scene
+            }
+            name => builtin(name),
+        };
+        let session = Session::open();
+        let first_scene = scene();
+        let mut renderer = session.renderer(&settings);
+        let first = renderer.render(&first_scene, &everything(&first_scene)).expect("a frame");
+        renderer.invalidate();
+        let again = renderer.render(&first_scene, &everything(&first_scene)).expect("a frame");
+        assert!(
+            again
+                .timings
+                .passes
+                .iter()
+                .all(|pass| { pass.skipped.as_ref().is_none_or(|reason| !reason.starts_with("unchanged")) })
+        );
+        assert_same(name, &first, &again);
+        let other = Session::open();
+        let second_scene = scene();
+        assert_same(name, &first, &other.render(&second_scene, &settings, &everything(&second_scene)));
+        let lit = first.slots[&Slot::Diffuse].pixels.iter().any(|pixel| pixel[0] > 0.0);
+        assert!(lit, "{name} has diffuse light to compare");
+    }
+}

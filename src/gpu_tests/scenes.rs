@@ -1,0 +1,99 @@
+//! Scenes built in memory, and their parts.
+
+use glam::{DAffine3, DVec3};
+
+use crate::renderer::{FrameRequest, Preset, Settings, Slot, Technique};
+use crate::scene::{
+    CameraView, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node, NodeId, Primitive, Projection, Scene,
+};
+
+/// Diffuse alone: no specular layer takes a share.
+pub(super) fn lambert(albedo: [f32; 3]) -> Material {
+    let [red, green, blue] = albedo;
+    Material { base_color: [red, green, blue, 1.0], specular: 0.0, ..Material::default() }
+}
+
+/// Two triangles; `corners` counter-clockwise as seen from the front.
+pub(super) fn quad(corners: [[f32; 3]; 4], material: MaterialId) -> Primitive {
+    Primitive { positions: corners.to_vec(), indices: vec![0, 1, 2, 0, 2, 3], material, ..Primitive::default() }
+}
+
+/// The six faces of the box from -`half` to `half`, each with its material: -x, +x, -y, +y, -z, +z.
+pub(super) fn box_faces(half: [f32; 3], materials: [MaterialId; 6]) -> Vec<Primitive> {
+    let face = |index: usize| {
+        let (axis, sign) = (index / 2, if index.is_multiple_of(2) { -1.0 } else { 1.0 });
+        let corner = |u: f32, v: f32| {
+            let mut point = [0.0; 3];
+            point[axis] = sign * half[axis];
+            point[(axis + 1) % 3] = u * half[(axis + 1) % 3];
+            point[(axis + 2) % 3] = v * sign * half[(axis + 2) % 3];
+            point
+        };
+        // Front faces look inwards.
+        quad([corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)], materials[index])
+    };
+    (0..6).map(face).collect()
+}
+
+/// Places a mesh of these primitives.
+pub(super) fn place(scene: &mut Scene, primitives: Vec<Primitive>, local: DAffine3) -> NodeId {
+    let mesh = scene.add_mesh(Mesh { name: String::new(), primitives }).expect("a sound mesh");
+    scene.add_node(Node { mesh: Some(mesh), local, ..Node::default() }).expect("a sound node")
+}
+
+/// A closed box around the origin, all of one material.
+pub(super) fn closed_box(half: f32, material: Material) -> Scene {
+    let mut scene = Scene::empty("box");
+    let id = scene.add_material(material).expect("a sound material");
+    place(&mut scene, box_faces([half; 3], [id; 6]), DAffine3::IDENTITY);
+    scene
+}
+
+/// A square in the plane y = 0, seen from above as front.
+pub(super) fn floor(half: f32, material: Material) -> Scene {
+    let mut scene = Scene::empty("floor");
+    let id = scene.add_material(material).expect("a sound material");
+    let corners = [[-half, 0.0, -half], [-half, 0.0, half], [half, 0.0, half], [half, 0.0, -half]];
+    place(&mut scene, vec![quad(corners, id)], DAffine3::IDENTITY);
+    scene
+}
+
+pub(super) fn add_light(
+    scene: &mut Scene,
+    kind: LightKind,
+    position: DVec3,
+    direction: DVec3,
+    intensity: [f32; 3],
+) -> crate::scene::LightId {
+    let light = Light { name: String::new(), kind, intensity, range: None };
+    scene.add_light_spec(&LightSpec { light, position, direction }).expect("a sound light")
+}
+
+/// A perspective view with a vertical angle of 60°.
+pub(super) fn view(eye: DVec3, target: DVec3) -> CameraView {
+    let up = if (target - eye).cross(DVec3::Y).length() < 1e-6 { DVec3::NEG_Z } else { DVec3::Y };
+    CameraView::look_at(
+        eye,
+        target,
+        up,
+        Projection::Perspective { vertical_fov: 60_f64.to_radians(), aspect: None, near: 0.01 },
+    )
+}
+
+pub(super) fn builtin(name: &str) -> Scene {
+    Scene::builtin(name).expect("a built-in scene").expect("it loads")
+}
+
+/// The rsm technique at its default preset with these changes.
+pub(super) fn settings(changes: &[(&str, &str)]) -> Settings {
+    let mut settings = Settings::new(Technique::Rsm, Preset::Default);
+    for (key, value) in changes {
+        settings.set(key, value).expect("a setting and its value");
+    }
+    settings
+}
+
+/// The image and these slots.
+pub(super) fn request(size: [u32; 2], camera: CameraView, slots: &[Slot]) -> FrameRequest {
+    FrameRequest { slots: slots.to_vec(), ..FrameRequest::new(size, camera) }
+}
