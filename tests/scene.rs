@@ -199,6 +199,12 @@ fn objects_are_seen_from_outside_and_rooms_from_inside() {
             scene.set_local_transform(NodeId(node), local).expect("it exists");
         }
         let far = scene.camera_view(None).expect("a view is always found").world;
+        if inwards {
+            // Eyes are so many metres above the floor, so only the side is the same.
+            let bounds = scene.bounds().expect("it has triangles");
+            assert!(far.translation.cmpgt(bounds.min).all() && far.translation.cmplt(bounds.max).all(), "{far:?}");
+            continue;
+        }
         assert!(((far.translation - DVec3::new(1e6, 0.0, -3e5)) / 1e3 - eye).length() < 1e-6, "{far:?}");
     }
 }
@@ -308,4 +314,76 @@ fn emissive_textures_weigh_the_power() {
     scene.add_node(Node { mesh: Some(mesh), ..Node::default() }).expect("it is sound");
     // A few texels a triangle are read, so the half is met roughly.
     assert_close(total_power(&scene.emitter_samples(10))[0], 0.5 * PI, 0.15);
+}
+
+/// Adds an axis-aligned box; its fronts look inwards or outwards.
+fn add_box(scene: &mut Scene, center: DVec3, size: DVec3, inwards: bool) {
+    let material = scene.add_material(Material::default()).expect("it is sound");
+    let corner = |bits: usize| std::array::from_fn(|axis| if bits >> axis & 1 == 0 { -0.5 } else { 0.5 });
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let mut indices: Vec<u32> = quads.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
+    if inwards {
+        indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+    }
+    let primitive = Primitive { positions: (0..8).map(corner).collect(), indices, material, ..Primitive::default() };
+    let mesh = scene.add_mesh(Mesh { name: "box".into(), primitives: vec![primitive] }).expect("it is sound");
+    let local = DAffine3::from_translation(center) * DAffine3::from_scale(size);
+    scene.add_node(Node { mesh: Some(mesh), local, ..Node::default() }).expect("it is sound");
+}
+
+fn is_within(point: DVec3, center: DVec3, size: DVec3) -> bool {
+    (point - center).abs().cmplt(size * 0.5).all()
+}
+
+/// The position and the viewing direction of a scene's automatic view, which is the same each time.
+fn automatic_view(scene: &Scene) -> (DVec3, DVec3) {
+    let view = scene.camera_view(None).expect("a view is always found");
+    assert!(view.automatic && view.world.is_finite());
+    assert_eq!(view, scene.camera_view(None).expect("a view is always found"));
+    (view.world.translation, -view.world.matrix3.z_axis)
+}
+
+#[test]
+fn rooms_are_seen_from_inside_with_and_without_outer_walls() {
+    let (center, size) = (DVec3::new(20.0, 1.5, -7.0), DVec3::new(8.0, 3.0, 5.0));
+    for outer_walls in [false, true] {
+        let mut scene = Scene::empty("room");
+        add_box(&mut scene, center, size, true);
+        // A cupboard against one wall, a table in the middle: nobody stands in them.
+        let solids = [
+            (DVec3::new(16.5, 1.0, -7.0), DVec3::new(1.0, 2.0, 4.0)),
+            (DVec3::new(20.0, 0.4, -7.0), DVec3::new(2.0, 0.8, 1.0)),
+        ];
+        for (center, size) in solids {
+            add_box(&mut scene, center, size, false);
+        }
+        if outer_walls {
+            add_box(&mut scene, center, size + 0.6, false);
+        }
+        let (eye, forward) = automatic_view(&scene);
+        assert!(is_within(eye, center, size), "{eye}");
+        assert!(solids.iter().all(|&(center, size)| !is_within(eye, center, size)), "{eye}");
+        assert!(eye.y > 0.7 && eye.y < 2.5, "eye height {}", eye.y);
+        assert!(forward.y.abs() < 1e-6, "level: {forward}");
+        // There is space in front of the eye.
+        assert!(is_within(eye + forward * 2.0, center, size), "{eye} {forward}");
+    }
+}
+
+#[test]
+fn objects_are_seen_from_outside() {
+    let mut scene = Scene::empty("table");
+    add_box(&mut scene, DVec3::new(0.0, 0.75, 0.0), DVec3::new(2.0, 0.1, 1.0), false);
+    for x in [-0.9, 0.9] {
+        add_box(&mut scene, DVec3::new(x, 0.35, 0.0), DVec3::new(0.1, 0.7, 1.0), false);
+    }
+    let bounds = scene.bounds().expect("it has triangles");
+    let (eye, forward) = automatic_view(&scene);
+    assert!(!is_within(eye, bounds.center(), bounds.size()), "{eye}");
+    assert!((bounds.center() - eye).normalize().dot(forward) > 0.999);
+}
+
+#[test]
+fn an_empty_scene_has_a_view() {
+    automatic_view(&Scene::empty("nothing"));
 }

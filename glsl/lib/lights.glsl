@@ -45,10 +45,11 @@ struct LightView {
     uint reserved;          // fills the last of eleven vec4
 };
 
-// The atlas cut into squares of 16x16 texels, listed view by view, in Morton order inside a view.
+// The atlas cut into squares of 16x16 texels, listed view by view, along Hilbert's curve inside a view.
 struct LightTile {
-    ivec2 origin;  // texels in the atlas
+    ivec2 origin;      // texels in the atlas
     uint view;
+    uint orientation;  // of the curve in the tile (lib/hilbert.glsl)
 };
 
 // ---- the two lists as texel buffers (rgba32ui), which a CPU driver reads several times faster than structs in storage buffers

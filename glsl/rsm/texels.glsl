@@ -1,8 +1,8 @@
 // What the texels of a light tile add to the distribution that virtual point lights are drawn from.
 
 #include "lib/color.glsl"
+#include "lib/hilbert.glsl"
 #include "lib/lights.glsl"
-#include "lib/morton.glsl"
 #include "lib/octahedral.glsl"
 
 const uint TILE_TEXELS = 256u;
@@ -14,7 +14,7 @@ layout(set = 0, binding = 3) uniform usampler2D light_normal;
 layout(set = 0, binding = 4) uniform sampler2D light_flux;
 
 ivec2 texel_of_tile(LightTile tile, uint index) {
-    return tile.origin + morton_decode(index);
+    return tile.origin + hilbert_decode(index, tile.orientation);
 }
 
 // Reflected flux [W] and lit surface [m²] of one texel; a texel that reflects nothing has no surface either.

@@ -19,7 +19,7 @@ void main() {
         LightView view = load_view(views, tiles[tile].view);
         vec4 sum = vec4(0.0);
         [[dont_unroll]] for (uint index = self; index < TILE_TEXELS; index += 64u) {
-            sum += flux_and_area(view, texel_of_tile(tiles[tile], index));
+            sum += flux_and_area(view, tiles[tile].origin + ivec2(index & 15u, index >> 4));
         }
         partial[self] = sum;
         barrier();

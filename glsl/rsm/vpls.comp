@@ -11,8 +11,10 @@
 //
 //   Φ_k = P(b).rgb − P(a).rgb        A_k = P(b).a − P(a).a
 //
-// so that ΣΦ_k = P(C) is the whole reflected flux, channel by channel, and every light has the same luminance. It sits on
-// the texel in the interval's middle. Lights share N by flux, since their texels share the one distribution.
+// so that ΣΦ_k = P(C) is the whole reflected flux, channel by channel, and every light has the same luminance. It sits on the
+// surface in the interval's middle: on the texel that holds it, as far along the way from the curve's previous texel to its next as
+// the middle lies through the texel's flux. Where rounding decides between two neighbouring texels, the place is their shared edge
+// either way. Lights share N by flux, since their texels share the one distribution.
 
 layout(local_size_x = 64) in;
 
@@ -28,7 +30,8 @@ layout(push_constant, scalar) uniform Push {
 struct Quantile {
     uint tile;
     vec4 partial;
-    ivec2 texel;     // the texel that holds the point, when tile < tile_count
+    uint index;      // the texel of the tile that holds the point, when tile < tile_count
+    float along;     // how far through that texel's flux the point lies, 0 … 1
     vec4 of_texel;   // its flux and surface
 };
 
@@ -51,7 +54,8 @@ Quantile find_quantile(float target) {
     Quantile found;
     found.tile = find_tile(target);
     found.partial = vec4(0.0);
-    found.texel = ivec2(0);
+    found.index = 0u;
+    found.along = 0.5;
     found.of_texel = vec4(0.0);
     LightTile tile = tiles[found.tile];
     LightView view = load_view(views, tile.view);
@@ -66,11 +70,36 @@ Quantile find_quantile(float target) {
             reached = remaining < weight;
             remaining -= weight;
             found.partial += share * of_texel;
-            found.texel = texel;
+            found.index = index;
+            found.along = share;
             found.of_texel = of_texel;
         }
     }
     return found;
+}
+
+// From the middle of a texel to the edge that it shares with the one `steps` (±1) further along the curve, in texels; 0 where
+// the curve jumps.
+vec2 towards_neighbor(uint tile, uint index, int steps) {
+    int place = int(tile * TILE_TEXELS + index) + steps;
+    uint neighbor = uint(clamp(place, 0, int(push.tile_count * TILE_TEXELS) - 1));
+    ivec2 step = texel_of_tile(tiles[neighbor / TILE_TEXELS], neighbor % TILE_TEXELS) - texel_of_tile(tiles[tile], index);
+    return abs(step.x) + abs(step.y) == 1 ? 0.5 * vec2(step) : vec2(0.0);
+}
+
+// The point of the texel's surface at a tangent coordinate inside the texel: on the plane through what the texel's middle sees.
+vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, vec3 normal) {
+    vec3 seen = position_of_texel(view, middle, depth);
+    vec3 origin = view.origin_rs;
+    if (is_orthographic(view)) {
+        origin += tangent.x * view.right + tangent.y * view.down;
+    }
+    vec3 ray = ray_of_tangent(view, tangent);
+    float slope = dot(normal, ray);
+    float z = dot(normal, seen - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
+    float middle_z = linear_depth(view, depth);
+    float reach = 4.0 * view.tangent_step * (is_orthographic(view) ? 1.0 : middle_z);
+    return origin + ray * clamp(z, middle_z - reach, middle_z + reach);
 }
 
 void main() {
@@ -117,8 +146,13 @@ void main() {
     float area = max(share.a, own * middle.of_texel.a);
 
     LightView view = load_view(views, tiles[middle.tile].view);
-    float depth = texelFetch(light_depth, middle.texel, 0).x;
-    vec2 tangent = tangent_of_texel(view, vec2(middle.texel) + 0.5);
-    vpls[2u * k] = pack_vpl_position(position_of_texel(view, tangent, depth), area);
-    vpls[2u * k + 1u] = pack_vpl_strength(flux, unpack_direction(texelFetch(light_normal, middle.texel, 0).x));
+    ivec2 texel = texel_of_tile(tiles[middle.tile], middle.index);
+    float depth = texelFetch(light_depth, texel, 0).x;
+    vec3 normal = unpack_direction(texelFetch(light_normal, texel, 0).x);
+    vec2 offset = middle.along < 0.5
+        ? (1.0 - 2.0 * middle.along) * towards_neighbor(middle.tile, middle.index, -1)
+        : (2.0 * middle.along - 1.0) * towards_neighbor(middle.tile, middle.index, 1);
+    vec2 center = tangent_of_texel(view, vec2(texel) + 0.5);
+    vpls[2u * k] = pack_vpl_position(position_on_texel(view, center, center + offset * view.tangent_step, depth, normal), area);
+    vpls[2u * k + 1u] = pack_vpl_strength(flux, normal);
 }

@@ -7,12 +7,19 @@ struct BlockLuminance {
 };
 
 struct Adaptation {
-    float log_average;  // exp(mean(ln max(L, 10⁻⁴·mean(L)))), W/(m²·sr)
+    float log_average;  // exp(mean(ln L)) over the pixels with L > 10⁻³·mean(L), W/(m²·sr)
     float maximum;
 };
 
-// Relative to the mean: black pixels cannot pull the average to zero, and a scene of twice the power looks the same.
-const float FLOOR_OF_MEAN = 1e-4;
+// Pixels darker than this share of the mean, an empty background or a black shadow, do not count: a picture is exposed for what can be
+// seen in it. Relative, so that a scene of twice the power looks the same.
+const float DARK_SHARE_OF_MEAN = 1e-3;
+
+// Σ ln L over the pixels that count, and their number.
+struct LogSum {
+    float sum;
+    float count;
+};
 
 // Keeps logarithms and quotients of a black image finite.
 const float SMALLEST_LUMINANCE = 1e-30;

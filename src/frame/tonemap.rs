@@ -16,7 +16,7 @@ pub(crate) fn tonemap(graph: &mut Graph<'_>, image: ImageRef, curve: ToneMap) ->
     let pixels = width * height;
     let block_count = pixels.div_ceil(64 * PIXELS_PER_INVOCATION);
     let blocks = graph.buffer::<types::BlockLuminance>("tonemap.blocks", block_count as usize);
-    let log_sums = graph.buffer::<f32>("tonemap.log_sums", block_count as usize);
+    let log_sums = graph.buffer::<types::LogSum>("tonemap.log_sums", block_count as usize);
     let adaptation = graph.buffer::<types::Adaptation>("tonemap.adaptation", 1);
     let display = graph.buffer::<u32>("tonemap.display", pixels as usize);
 
@@ -32,7 +32,7 @@ pub(crate) fn tonemap(graph: &mut Graph<'_>, image: ImageRef, curve: ToneMap) ->
         let pass = LogLuminance { image: image.sampled(), blocks: blocks.read(), log_sums: log_sums.write(), push };
         graph.pass("tonemap/log-luminance", pass).groups([block_count, 1, 1]);
 
-        let push = AdaptationPush { block_count, pixel_count: pixels };
+        let push = AdaptationPush { block_count };
         let pass =
             Adaptation { blocks: blocks.read(), log_sums: log_sums.read(), adaptation: adaptation.write(), push };
         graph.pass("tonemap/adaptation", pass).groups([1, 1, 1]);

@@ -6,7 +6,7 @@
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
-use glam::{IVec2, UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles as _};
+use glam::{IVec2, UVec2, UVec4, Vec2, Vec2Swizzles as _, Vec3, Vec4, Vec4Swizzles as _};
 
 /// The smallest GGX α that the shaders evaluate (`lib/brdf.glsl`).
 pub(crate) const MINIMUM_ALPHA: f32 = 1e-3;
@@ -81,11 +81,22 @@ pub(crate) fn unpack_direction_in_float_unnormalized(word: f32) -> Vec3 {
     ))
 }
 
-/// The cell of a Morton index (`lib/morton.glsl`).
+/// The cell of an index along Hilbert's curve through 16×16 cells (`lib/hilbert.glsl`).
 #[must_use]
-pub(crate) fn morton_decode(index: u32) -> IVec2 {
-    let even_bits = |bits: u32| (0..16).fold(0, |even, i| even | (bits >> (2 * i) & 1) << i);
-    UVec2::new(even_bits(index), even_bits(index >> 1)).as_ivec2()
+pub(crate) fn hilbert_decode(index: u32, orientation: u32) -> IVec2 {
+    let (mut cell, mut rest) = (UVec2::ZERO, index);
+    for side in [1, 2, 4, 8] {
+        let right = rest >> 1 & 1;
+        let below = (rest ^ right) & 1;
+        if below == 0 {
+            cell = if right == 1 { UVec2::splat(side - 1) - cell } else { cell };
+            cell = cell.yx();
+        }
+        cell += side * UVec2::new(right, below);
+        rest >>= 2;
+    }
+    cell = if orientation & 2 != 0 { UVec2::splat(15) - cell } else { cell };
+    (if orientation & 1 != 0 { cell.yx() } else { cell }).as_ivec2()
 }
 
 /// Solid angle, in sr, of the square of side `extent` around `tangent` in the plane at distance 1 (`lib/solid_angle.glsl`).
@@ -306,13 +317,14 @@ mod tests {
     }
 
     #[test]
-    fn morton_order_visits_every_texel_of_a_tile() {
-        let mut seen = [[false; 16]; 16];
-        for index in 0..256 {
-            let cell = morton_decode(index);
-            seen[cell.y as usize][cell.x as usize] = true;
+    fn hilbert_curve_visits_every_texel_of_a_tile_in_steps_of_one() {
+        for orientation in 0..4 {
+            let path: Vec<IVec2> = (0..256).map(|index| hilbert_decode(index, orientation)).collect();
+            assert!(path.windows(2).all(|pair| (pair[1] - pair[0]).abs().element_sum() == 1));
+            let mut seen = [[false; 16]; 16];
+            path.iter().for_each(|cell| seen[cell.y as usize][cell.x as usize] = true);
+            assert!(seen.iter().flatten().all(|&seen| seen));
         }
-        assert!(seen.iter().flatten().all(|&seen| seen));
     }
 
     #[test]

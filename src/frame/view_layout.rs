@@ -183,7 +183,7 @@ pub(crate) struct LaidOutView {
 pub(crate) struct Atlas {
     pub(crate) size: [u32; 2],
     pub(crate) views: Vec<LaidOutView>,
-    /// All tiles of all views, view by view, in Morton order inside a view, so that neighbours in the list are neighbours
+    /// All tiles of all views, view by view, along Hilbert's curve inside a view, so that neighbours in the list are neighbours
     /// on the surface.
     pub(crate) tiles: Vec<types::LightTile>,
 }
@@ -238,26 +238,39 @@ impl Atlas {
 }
 
 fn tiles_of(view: u32, record: &types::LightView) -> Vec<types::LightTile> {
-    let tile = i32::try_from(TILE).unwrap_or(1);
-    let [columns, rows] = record.rect_size.map(|side| side / tile);
-    let mut places: Vec<[i32; 2]> = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row])).collect();
-    places.sort_by_key(|&[column, row]| spread(column.cast_unsigned()) | spread(row.cast_unsigned()) << 1);
-    places
-        .into_iter()
-        .map(|[column, row]| types::LightTile {
-            origin: [record.rect_origin[0] + column * tile, record.rect_origin[1] + row * tile],
-            view,
+    let [columns, rows] = record.rect_size.map(|side| side.cast_unsigned() / TILE);
+    let side = columns.max(rows).next_power_of_two();
+    let places = (0..side * side).map(|index| tile_of_curve(index, side));
+    let inside = places.filter(|([column, row], _)| *column < columns && *row < rows);
+    inside
+        .map(|(place, orientation)| {
+            let at = |axis: usize| record.rect_origin[axis] + (place[axis] * TILE).cast_signed();
+            types::LightTile { origin: [at(0), at(1)], view, orientation }
         })
         .collect()
 }
 
-/// The bits of a number below 2¹⁶, each followed by a zero.
-fn spread(value: u32) -> u32 {
-    let mut bits = value & 0xffff;
-    for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
-        bits = (bits | bits << shift) & mask;
+/// The tile that Hilbert's curve through `side`² tiles reaches at `index`, and how the curve through the tile's own texels
+/// is turned there: bit 0 transposed, bit 1 turned by half (glsl/lib/hilbert.glsl).
+fn tile_of_curve(index: u32, side: u32) -> ([u32; 2], u32) {
+    let (mut cell, mut orientation, mut rest) = ([0, 0], 0, index);
+    let mut half = 1;
+    while half < side {
+        let right = rest >> 1 & 1;
+        let below = (rest ^ right) & 1;
+        if below == 0 {
+            if right == 1 {
+                cell = cell.map(|at| half - 1 - at);
+                orientation ^= 2;
+            }
+            cell = [cell[1], cell[0]];
+            orientation ^= 1;
+        }
+        cell = [cell[0] + half * right, cell[1] + half * below];
+        rest >>= 2;
+        half *= 2;
     }
-    bits
+    (cell, orientation)
 }
 
 #[cfg(test)]
@@ -296,6 +309,21 @@ mod tests {
             }
         }
         assert_eq!(atlas.tiles.len() as u32 * TILE * TILE, texels, "every texel lies in one tile");
+    }
+
+    #[test]
+    fn the_curve_through_all_texels_of_a_square_view_has_no_jump() {
+        use crate::frame::twins::hilbert_decode;
+        let path = (0..64).flat_map(|index| {
+            let (tile, orientation) = tile_of_curve(index, 8);
+            (0..256)
+                .map(move |texel| hilbert_decode(texel, orientation).to_array().map(i32::cast_unsigned))
+                .map(move |[x, y]| [tile[0] * TILE + x, tile[1] * TILE + y])
+        });
+        let path: Vec<[u32; 2]> = path.collect();
+        for pair in path.windows(2) {
+            assert_eq!(pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]), 1, "{pair:?}");
+        }
     }
 
     #[test]

@@ -10,9 +10,9 @@ use crate::renderer::{ColorImage, ToneMap};
 /// The luminance that `aces` exposes the scene's log-average to: a mid-grey of 18 %.
 pub const KEY: f32 = 0.18;
 
-/// Luminances below this share of the mean count as this share in the log-average, so that black pixels, whose
-/// logarithm is −∞, darken the average only so far, whatever the scale of the image.
-pub const LOG_AVERAGE_FLOOR: f64 = 1e-4;
+/// Pixels darker than this share of the mean luminance, an empty background or a black shadow, do not count in the
+/// log-average: a picture is exposed for what can be seen in it, whatever its scale.
+pub const DARK_SHARE_OF_MEAN: f64 = 1e-3;
 
 /// Bias of Drago's mapping: how strongly highlights are compressed, 0.5 to 1; 0.85 is the paper's choice.
 const DRAGO_BIAS: f32 = 0.85;
@@ -89,15 +89,12 @@ pub fn luminance(radiance: &[f32; 3]) -> f32 {
     0.2126 * radiance[0] + 0.7152 * radiance[1] + 0.0722 * radiance[2]
 }
 
-/// exp of the mean of ln of the luminances, each at least [`LOG_AVERAGE_FLOOR`] times their mean; 0 for a black image.
+/// exp of the mean of ln of the luminances above [`DARK_SHARE_OF_MEAN`] times their mean; 0 for a black image.
 pub fn log_average_luminance(pixels: &[[f32; 3]]) -> f64 {
     let luminances = || pixels.iter().map(|pixel| f64::from(sound_luminance(pixel)));
     let mean = luminances().sum::<f64>() / pixels.len().max(1) as f64;
-    if mean <= 0.0 {
-        return 0.0;
-    }
-    let floor = LOG_AVERAGE_FLOOR * mean;
-    (luminances().map(|luminance| luminance.max(floor).ln()).sum::<f64>() / pixels.len() as f64).exp()
+    let counted = || luminances().filter(|luminance| *luminance > DARK_SHARE_OF_MEAN * mean);
+    if mean > 0.0 { (counted().map(f64::ln).sum::<f64>() / counted().count() as f64).exp() } else { 0.0 }
 }
 
 /// The sRGB transfer function (IEC 61966-2-1): a linear display value in [0, 1] to its encoding in [0, 1].

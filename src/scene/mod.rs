@@ -11,7 +11,8 @@
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
-//! | `auto_view` | a view of a scene that has no camera |
+//! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
+//! | `rays` | rays against all triangles, for those views |
 //! | `gltf/` | reading files |
 //! | `builtin` | the scenes that come with irradia |
 //!
@@ -26,9 +27,11 @@ mod emitters;
 mod error;
 mod facts;
 mod gltf;
+mod indoor_view;
 mod light;
 mod material;
 mod mesh;
+mod rays;
 mod tangents;
 mod world;
 
