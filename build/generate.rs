@@ -164,8 +164,8 @@ fn write_table(
         };
         writeln!(
             out,
-            "vp::Binding {{ name: {:?}, set: {}, binding: {}, kind: vp::BindingKind::{kind} }},",
-            binding.name, binding.set, binding.binding
+            "vp::Binding {{ set: {}, binding: {}, kind: vp::BindingKind::{kind} }},",
+            binding.set, binding.binding
         )
         .ok();
     }

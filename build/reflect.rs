@@ -115,7 +115,7 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
         stage.constants.push(Constant {
             name: module.name(id)?,
             id: spec_id,
-            ty: module.host_type(ty, 0, &mut stage.structs)?,
+            ty: module.host_type(ty, &mut stage.structs)?,
             default,
         });
     }
@@ -270,7 +270,7 @@ impl Module {
                     RawType::RuntimeArray { element } => element,
                     _ => member,
                 };
-                let ty = self.host_type(element, pointee, structs)?;
+                let ty = self.host_type(element, structs)?;
                 let member_has = |decoration| self.member_decorations.contains_key(&(pointee, 0, decoration));
                 let kind = if class == StorageClass::Uniform {
                     BindingKind::Uniform(ty)
@@ -297,26 +297,26 @@ impl Module {
             let name = self.member_names.get(&(id, index)).cloned().ok_or("a struct member has no name")?;
             let offset = self.member_decorations.get(&(id, index, Decoration::Offset)).copied();
             let offset = offset.ok_or_else(|| format!("member {name} has no offset"))?;
-            fields.push(Field { name, offset, ty: self.host_type(member, id, structs)? });
+            fields.push(Field { name, offset, ty: self.host_type(member, structs)? });
         }
         Ok(fields)
     }
 
-    fn host_type(&self, id: u32, parent: u32, structs: &mut BTreeMap<String, Struct>) -> Result<Type, String> {
+    fn host_type(&self, id: u32, structs: &mut BTreeMap<String, Struct>) -> Result<Type, String> {
         Ok(match &self.types[&id] {
             RawType::Float => Type::Float,
             RawType::Int { signed: true } => Type::Int,
             RawType::Int { signed: false } => Type::Uint,
-            RawType::Vector { component, count } => array(self.host_type(*component, parent, structs)?, *count, 4),
+            RawType::Vector { component, count } => array(self.host_type(*component, structs)?, *count, 4),
             RawType::Matrix { column, count } => {
-                let column = self.host_type(*column, parent, structs)?;
+                let column = self.host_type(*column, structs)?;
                 let stride = size_of(&column, structs);
                 array(column, *count, stride)
             }
             RawType::Array { element, length } => {
                 let count = self.constants.get(length).map_or(0, |constant| constant.1);
                 let stride = self.decorations.get(&(id, Decoration::ArrayStride)).copied().unwrap_or(0);
-                array(self.host_type(*element, parent, structs)?, count, stride)
+                array(self.host_type(*element, structs)?, count, stride)
             }
             RawType::Struct { .. } => {
                 let name = self.name(id)?;

@@ -105,11 +105,11 @@ pub fn rows(run: &Run) -> Vec<Row> {
     let unexplained = Row { ms: Some(run.unexplained_ms), ..Row::frame("unexplained") };
     rows.push(if unexplained_share.is_finite() { unexplained.share(unexplained_share) } else { unexplained });
     rows.push(Row::frame("serialised frame").spread(run.serialised_ms).text("barriers between all passes"));
-    rows.push(Row::frame("frame").spread(run.frame_ms).text(&format!(
+    rows.push(Row::frame("frame").spread(run.frame_ms).text(format!(
         "passes overlap as the driver likes; {} ms on the host",
         units::milliseconds(run.host_ms.median)
     )));
-    rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text(&format!(
+    rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text(format!(
         "nothing changed since the last; {} ms on the host",
         units::milliseconds(run.unchanged_host_ms.median)
     )));

@@ -103,9 +103,6 @@ impl Bench<'_> {
         for path in [&args.json, &args.csv, &args.md].into_iter().flatten() {
             output::check_target(path)?;
         }
-        if let Some(folder) = &args.images {
-            fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
-        }
         let mut contenders = Vec::new();
         for technique in Choice::expand(&args.technique, &Technique::ALL) {
             for preset in &args.preset {
@@ -114,7 +111,11 @@ impl Bench<'_> {
         }
         let pictures = args.images.is_some();
         let options = Options { size: args.scene_args.size, frames: args.frames, warmup: args.warmup, pictures };
-        Ok(Bench { args, context: invocation.context()?, contenders, options })
+        let context = invocation.context()?;
+        if let Some(folder) = &args.images {
+            fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
+        }
+        Ok(Bench { args, context, contenders, options })
     }
 
     fn frames_per_scene(&self) -> u64 {

@@ -38,7 +38,7 @@ impl SceneArgs {
         let mut scene = Scene::open(spec)?;
         let load_ms = 1e3 * start.elapsed().as_secs_f64();
         for light in &self.lights {
-            scene.add_light_spec(light);
+            scene.add_light_spec(light)?;
         }
         if let Some(sky) = self.sky {
             scene.set_sky(sky);

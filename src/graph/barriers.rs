@@ -230,7 +230,7 @@ mod tests {
             let (mut last_write, mut visible, mut unordered) = (None::<Stages>, Stages::NONE, Stages::NONE);
             for _ in 0..12 {
                 let stage = stages[random.next_u32() as usize % 3];
-                let write = random.next_u32() % 3 == 0;
+                let write = random.next_u32().is_multiple_of(3);
                 let barrier = state.transition(if write { buffer_write(stage) } else { buffer_read(stage) });
                 if write {
                     let waits = barrier.map_or(Stages::NONE, |barrier| barrier.from_stages);

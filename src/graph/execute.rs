@@ -99,8 +99,8 @@ impl Graph<'_> {
         self.store.recorder.timestamp(&self.store.queries, 0);
         self.store.recorder.full_barrier();
         let mut order = Vec::new();
-        for index in 0..self.passes.len() {
-            if verdicts[index] == Verdict::Run {
+        for (index, verdict) in verdicts.iter().enumerate() {
+            if *verdict == Verdict::Run {
                 let slot = u32::try_from(order.len()).unwrap_or(0);
                 order.push(index);
                 self.record_pass(index, slot, timing, &mut counters)?;

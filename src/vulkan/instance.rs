@@ -51,8 +51,12 @@ impl Instance {
             return Err(VulkanError::OldLoader(version_text(version)));
         }
         // SAFETY: the entry is loaded; no layer is named.
-        let available = unsafe { entry.enumerate_instance_extension_properties(None) }
-            .called("vkEnumerateInstanceExtensionProperties")?;
+        let available =
+            unsafe { entry.enumerate_instance_extension_properties(None) }.map_err(|result| match result {
+                // What some loaders answer when no driver's manifest can be read.
+                vk::Result::ERROR_INCOMPATIBLE_DRIVER | vk::Result::ERROR_OUT_OF_HOST_MEMORY => VulkanError::NoDevice,
+                result => VulkanError::Call { call: "vkEnumerateInstanceExtensionProperties".to_owned(), result },
+            })?;
         let has = |wanted: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(wanted));
         let layers = if validation == Validation::Off { vec![] } else { vec![validation_layer(&entry)?.as_ptr()] };
         // Drivers and the validation layer both offer debug labels; without them frames lack names, nothing else.

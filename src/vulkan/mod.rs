@@ -20,9 +20,11 @@ pub(crate) use device::Device;
 pub use error::VulkanError;
 pub use instance::Validation;
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
+#[allow(unused_imports, reason = "passes of the methods to come; tests use it already")]
+pub(crate) use pipelines::StencilState;
 pub(crate) use pipelines::{
-    DepthState, Pipeline, Pipelines, RasterState, SamplerKind, StencilState, TargetFormats, VertexAttribute,
-    VertexLayout, pipeline_stages,
+    DepthState, Pipeline, Pipelines, RasterState, SamplerKind, TargetFormats, VertexAttribute, VertexLayout,
+    pipeline_stages,
 };
 pub(crate) use queries::Queries;
 pub(crate) use recorder::{Attachment, Attachments, Barriers, Descriptor, ImageBarrier, MaterialSets, Recorder, Scope};

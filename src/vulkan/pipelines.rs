@@ -19,6 +19,7 @@ const MATERIAL_TEXTURES: u32 = 7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum SamplerKind {
     NearestClamp,
+    #[allow(dead_code, reason = "volumes and filtered maps of the methods to come")]
     LinearClamp,
     /// A texture of the scene.
     Texture {

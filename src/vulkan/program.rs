@@ -73,7 +73,6 @@ impl StageKind {
 /// A binding of a program.
 #[derive(Debug)]
 pub(crate) struct Binding {
-    pub(crate) name: &'static str,
     pub(crate) set: u32,
     pub(crate) binding: u32,
     pub(crate) kind: BindingKind,

@@ -45,10 +45,6 @@ impl Queries {
         Ok(queries)
     }
 
-    pub(crate) fn capacity(&self) -> u32 {
-        self.capacity
-    }
-
     pub(crate) fn reset(&mut self) {
         // SAFETY: the last frame that used the pools has finished (module invariant).
         unsafe {

@@ -44,7 +44,6 @@ pub(crate) struct Survey {
     pub(crate) features: vk::PhysicalDeviceFeatures,
     pub(crate) queue_family: u32,
     pub(crate) timestamp_bits: u32,
-    pub(crate) subgroup_size: u32,
 }
 
 impl Survey {
@@ -101,7 +100,6 @@ impl Survey {
             features,
             queue_family: family.and_then(|family| u32::try_from(family).ok()).unwrap_or(0),
             timestamp_bits,
-            subgroup_size: vulkan11.subgroup_size,
         }
     }
 }

@@ -1,0 +1,80 @@
+//! Where files go, and what becomes of a file that is already there. The tests render, so they need a Vulkan device.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// An empty folder for one test, made anew every time.
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("output-files").join(test);
+    if path.exists() {
+        fs::remove_dir_all(&path).expect("the test's own folder");
+    }
+    fs::create_dir_all(&path).expect("the target folder is writable");
+    path
+}
+
+fn render(output: &Path, more: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_irradia"));
+    program.args(["render", "cornell-point", "--size", "16x16", "-o"]).arg(output).args(more);
+    program.output().expect("the program starts")
+}
+
+/// Fails with one sentence that names the file or its folder.
+fn assert_fails(output: &Path, words: &[&str]) {
+    let done = render(output, &[]);
+    let message = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{message}");
+    assert!(message.starts_with("irradia: ") && message.lines().count() == 1, "{message}");
+    for word in words {
+        assert!(message.contains(word), "{word} is not in: {message}");
+    }
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the test's own folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_not_overwritten() {
+    let folder = folder("replace");
+    let (file, other_name) = (folder.join("a.png"), folder.join("b"));
+    fs::write(&file, "old").expect("the test's own folder");
+    fs::hard_link(&file, &other_name).expect("the target folder knows hard links");
+    let done = render(&file, &[]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(fs::read(&file).expect("written").starts_with(b"\x89PNG"));
+    assert_eq!(fs::read(&other_name).expect("the old file"), b"old", "the old file itself was written to");
+    assert_eq!(names_in(&folder), ["a.png", "b"]);
+}
+
+#[test]
+fn a_failure_leaves_the_file_that_is_there() {
+    let folder = folder("keep");
+    let file = folder.join("a.png");
+    fs::write(&file, "old").expect("the test's own folder");
+    assert_eq!(render(&file, &["--device", "no-such-device"]).status.code(), Some(1));
+    assert_eq!(fs::read(&file).expect("the old file"), b"old");
+    assert_eq!(names_in(&folder), ["a.png"]);
+}
+
+#[test]
+fn a_place_that_takes_no_file_is_a_failure() {
+    let folder = folder("no-place");
+    assert_fails(&folder.join("none").join("a.png"), &["none", "there is no folder"]);
+    fs::create_dir(folder.join("a.png")).expect("the test's own folder");
+    assert_fails(&folder.join("a.png"), &["a.png"]);
+    fs::write(folder.join("file"), []).expect("the test's own folder");
+    assert_fails(&folder.join("file").join("a.png"), &["file"]);
+    assert_eq!(names_in(&folder), ["a.png", "file"]);
+}
+
+#[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "a folder that even root cannot write to")]
+fn a_folder_that_cannot_be_written_to_is_a_failure() {
+    assert_fails(Path::new("/proc/a.png"), &["/proc"]);
+}
