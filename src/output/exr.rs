@@ -2,6 +2,7 @@
 //! (`diffuse.R`, `diffuse.G`, `diffuse.B`), all in one part so that any viewer opens it.
 
 use std::collections::BTreeMap;
+use std::io::{Cursor, Write as _};
 use std::path::Path;
 
 use ::exr::prelude::{
@@ -70,7 +71,32 @@ pub fn write_exr(
         .attributes
         .other
         .extend(attributes.iter().map(|(name, value)| (text(name), AttributeValue::Text(text(value)))));
-    AtomicFile::write_whole(path, |file| document.write().to_buffered(file))
+    let mut bytes = Vec::new();
+    document.write().to_buffered(Cursor::new(&mut bytes)).map_err(|error| OutputError::write(path, error))?;
+    sort_attributes(&mut bytes);
+    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+}
+
+/// Puts the attributes of a single-part file's header in the order of their names. The crate keeps them in a hash map and
+/// writes them in another order every time; the same frame shall make the same file. An attribute is its name, its type's
+/// name, both ended by a zero, the size of its value, and the value; a zero ends the list. Nothing else moves.
+fn sort_attributes(bytes: &mut [u8]) {
+    const START: usize = 8;
+    let mut attributes: Vec<&[u8]> = Vec::new();
+    let mut at = START;
+    while bytes.get(at).is_some_and(|&first| first != 0) {
+        let zero = |from: usize| bytes[from..].iter().position(|&byte| byte == 0).map(|length| from + length);
+        let end = zero(at).and_then(|name| zero(name + 1)).and_then(|kind| {
+            let size = bytes.get(kind + 1..kind + 5)?;
+            Some(kind + 5 + u32::from_le_bytes([size[0], size[1], size[2], size[3]]) as usize)
+        });
+        let Some(attribute) = end.and_then(|end| bytes.get(at..end)) else { return };
+        attributes.push(attribute);
+        at += attribute.len();
+    }
+    attributes.sort_unstable();
+    let sorted = attributes.concat();
+    bytes[START..at].copy_from_slice(&sorted);
 }
 
 /// Reads an image and the layers that are named like slots; other channels are left out.
@@ -149,6 +175,19 @@ mod tests {
         write_exr(&path, &written.image, &written.slots, &written.attributes).expect("written");
         assert_eq!(folder.names(), ["a.exr"]);
         assert_eq!(read_exr(&path).expect("read"), written);
+    }
+
+    #[test]
+    fn the_same_frame_makes_the_same_file() {
+        let folder = TestFolder::new("exr-same");
+        let image = gradient([5, 3], 0.25);
+        let attributes: Attributes = (0..12).map(|index| (format!("attribute{index}"), format!("{index}"))).collect();
+        let write = |name: &str| {
+            let path = folder.0.join(name);
+            write_exr(&path, &image, &BTreeMap::new(), &attributes).expect("a sound image");
+            std::fs::read(path).expect("just written")
+        };
+        assert!(write("a.exr") == write("b.exr"));
     }
 
     #[test]
