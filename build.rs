@@ -44,15 +44,15 @@ pub(crate) fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
         let source = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let words = compile(&compiler, root, &path, &source, stage_kind)?;
         let stage = reflect::reflect(&words).map_err(|error| format!("{}: {error}", path.display()))?;
-        let spirv_path = out_dir.join(format!("{piece}.{pass}.{}.spv", part(path.extension())));
+        let spirv_file = format!("{piece}.{pass}.{}.spv", part(path.extension()));
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        fs::write(&spirv_path, bytes).map_err(|error| format!("{}: {error}", spirv_path.display()))?;
+        fs::write(out_dir.join(&spirv_file), bytes).map_err(|error| format!("{spirv_file}: {error}"))?;
         let new = || Program { piece: piece.clone(), pass: pass.clone(), summary: String::new(), stages: Vec::new() };
         let program = programs.entry((piece.clone(), pass.clone())).or_insert_with(new);
         if program.summary.is_empty() || stage_kind == ShaderKind::Fragment {
             program.summary = summary(&source).unwrap_or_else(|| format!("`glsl/{piece}/{pass}`."));
         }
-        program.stages.push(CompiledStage { kind, spirv_path, stage });
+        program.stages.push(CompiledStage { kind, spirv_file, stage });
     }
     let mut programs: Vec<Program> = programs.into_values().collect();
     for program in &mut programs {
