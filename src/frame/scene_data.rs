@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{DAffine3, DVec3};
 
-use super::textures::{MaterialTextureSets, TextureArrays};
+use super::textures::{MaterialTextureSets, TextureArrays, slots_of};
 use crate::graph::hash_of;
 use crate::scene::{Alpha, Bounds, Instance, Material, Primitive, Scene};
 use crate::shaders::types;
@@ -401,14 +401,5 @@ fn material_record(material: &Material) -> types::Material {
 
 /// The bits of glsl/lib/scene.glsl.
 fn texture_kinds(material: &Material) -> u32 {
-    let textures = [
-        material.base_color_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-        material.emissive_texture,
-        material.specular_texture,
-        material.specular_color_texture,
-        material.transmission_texture,
-    ];
-    (2..).zip(textures).filter(|(_, texture)| texture.is_some()).map(|(bit, _)| 1 << bit).sum()
+    (2..).zip(slots_of(material)).filter(|(_, texture)| texture.is_some()).map(|(bit, _)| 1 << bit).sum()
 }

@@ -123,17 +123,8 @@ impl MaterialTextureSets {
         };
         let mut sets = Vec::new();
         for material in scene.materials() {
-            let bound = [
-                material.base_color_texture,
-                material.metallic_roughness_texture,
-                material.normal_texture,
-                material.emissive_texture,
-                material.specular_texture,
-                material.specular_color_texture,
-                material.transmission_texture,
-            ];
             let kind = BindingKind::SampledImage(ImageDim::D2Array);
-            let set = (0..).zip(bound).map(|(binding, texture)| Ok((binding, kind, descriptor(texture)?)));
+            let set = (0..).zip(slots_of(material)).map(|(binding, texture)| Ok((binding, kind, descriptor(texture)?)));
             sets.push(set.collect::<Result<Vec<_>, VulkanError>>()?);
         }
         // Every program that reads textures declares the same set.
@@ -144,6 +135,19 @@ impl MaterialTextureSets {
     pub(super) fn bytes(&self) -> u64 {
         self.arrays.iter().map(|array| array.bytes()).sum()
     }
+}
+
+/// A material's textures in the order in which shaders bind and number them (glsl/geometry/material_textures.glsl).
+pub(super) fn slots_of(material: &Material) -> [Option<TextureRef>; 7] {
+    [
+        material.base_color_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+        material.emissive_texture,
+        material.specular_texture,
+        material.specular_color_texture,
+        material.transmission_texture,
+    ]
 }
 
 fn sampler_of(texture: &Texture) -> SamplerKind {

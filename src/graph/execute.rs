@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::barriers::Need;
 use super::bindings::{Access, BufferUse, ImageUse};
 use super::demand::{Needs, Verdict, Version, decide};
+use super::needs::{READ_ONLY_DEPTH, layout_of, merged_needs};
 use super::pass::{ClearColor, DrawList, Draws, Pass, Targets, Work};
 use super::store::{MAX_COUNTERS, MAX_PASSES};
 use super::{Body, Graph};
 use crate::renderer::{PassTiming, Timing};
 use crate::vulkan::program::{BindingKind, ImageDim};
 use crate::vulkan::{
-    Attachment, Attachments, Barriers, Buffer, Descriptor, Image, ImageBarrier, Location, Pipeline, Scope,
-    SubresourceView, TargetFormats, VulkanError, pipeline_stages, texel_bytes,
+    Attachment, Attachments, Barriers, Buffer, Descriptor, Image, ImageBarrier, Pipeline, Scope, SubresourceView,
+    TargetFormats, VulkanError, pipeline_stages,
 };
 
 /// The number of a read-back in [`Executed::read_back`].
@@ -562,88 +562,6 @@ impl Graph<'_> {
         }
         Ok(rows)
     }
-
-    /// Where each read-back lies in the read-back buffer: offset and size.
-    fn provide_read_back(&mut self) -> Result<Vec<(u64, u64)>, VulkanError> {
-        let mut places = Vec::new();
-        let mut end = 0_u64;
-        for &(id, mip) in &self.read_backs {
-            let size = match &self.resources[id].body {
-                Body::Image(info) => {
-                    info.extent.iter().map(|&length| u64::from((length >> mip).max(1))).product::<u64>()
-                        * u64::from(info.layers)
-                        * texel_bytes(info.format)
-                }
-                Body::Buffer { bytes } => bytes.next_multiple_of(4).max(4),
-                _ => 0,
-            };
-            places.push((end, size));
-            end += size.next_multiple_of(16);
-        }
-        let held = self.store.read_back.as_ref().map_or(0, |buffer| buffer.size);
-        if end > held {
-            self.store.read_back = None;
-            self.store.read_back = Some(Buffer::new(
-                &self.store.device,
-                "read-back",
-                end,
-                vk::BufferUsageFlags::TRANSFER_DST,
-                Location::ReadBack,
-            )?);
-        }
-        Ok(places)
-    }
-
-    fn record_read_backs(&mut self, places: &[(u64, u64)]) {
-        for (index, &(offset, size)) in places.iter().enumerate() {
-            let (id, mip) = self.read_backs[index];
-            let name = self.resources[id].name.clone();
-            let read = Need {
-                stages: vk::PipelineStageFlags2::ALL_TRANSFER,
-                access: vk::AccessFlags2::TRANSFER_READ,
-                layout: vk::ImageLayout::UNDEFINED,
-                writes: false,
-                discards: false,
-            };
-            let Some(target) = &self.store.read_back else { return };
-            if let Some(stored) = self.store.images.get_mut(&name) {
-                let found = stored.states[mip as usize]
-                    .transition(Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read });
-                let image = stored.image.clone();
-                let barriers = found.map(|found| ImageBarrier {
-                    image: &image,
-                    mip,
-                    scope: Scope::FULL,
-                    old_layout: found.old_layout,
-                    new_layout: found.new_layout,
-                });
-                self.store.recorder.barriers(&Barriers { memory: None, images: barriers.into_iter().collect() });
-                self.store.recorder.read_image(&image, mip, target, offset);
-            } else if let Some(stored) = self.store.buffers.get_mut(&name) {
-                // A full barrier stands before the read-backs.
-                stored.state.transition(read);
-                self.store.recorder.copy(&stored.buffer, 0, target, offset, size);
-            }
-        }
-        self.store.recorder.full_barrier();
-        let host = Scope {
-            from_stages: vk::PipelineStageFlags2::ALL_COMMANDS,
-            from_access: vk::AccessFlags2::MEMORY_WRITE,
-            to_stages: vk::PipelineStageFlags2::HOST,
-            to_access: vk::AccessFlags2::HOST_READ,
-        };
-        self.store.recorder.barriers(&Barriers { memory: Some(host), images: Vec::new() });
-    }
-
-    fn copy_read_backs(&self, places: &[(u64, u64)]) -> Vec<Vec<u8>> {
-        let mapped = self.store.read_back.as_ref().and_then(Buffer::mapped).unwrap_or(&[]);
-        let range =
-            |(offset, size): (u64, u64)| Some(usize::try_from(offset).ok()?..usize::try_from(offset + size).ok()?);
-        places
-            .iter()
-            .map(|&place| range(place).and_then(|range| mapped.get(range)).map(<[u8]>::to_vec).unwrap_or_default())
-            .collect()
-    }
 }
 
 impl Pass {
@@ -669,85 +587,4 @@ fn resource_of(access: &Access) -> usize {
         Access::Image { image, .. } => *image,
         Access::Buffer { buffer, .. } => *buffer,
     }
-}
-
-const READ_ONLY_DEPTH: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-
-/// A depth image that is sampled is in the layout in which it can be tested against too.
-fn layout_of(usage: ImageUse, holds_depth: bool) -> vk::ImageLayout {
-    match usage {
-        ImageUse::Sampled(_) if holds_depth => READ_ONLY_DEPTH,
-        ImageUse::Sampled(_) => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-        ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => vk::ImageLayout::GENERAL,
-        ImageUse::Color { .. } => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
-        ImageUse::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-        ImageUse::DepthTest => READ_ONLY_DEPTH,
-        ImageUse::Clear => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-    }
-}
-
-/// What each place that a pass touches demands; several uses of one place by one pass are merged.
-fn merged_needs(
-    pass: &Pass,
-    shaders: vk::PipelineStageFlags2,
-    holds_depth: impl Fn(usize) -> bool,
-) -> Vec<(usize, u32, Need)> {
-    let mut merged: Vec<(usize, u32, Need)> = Vec::new();
-    for access in pass.accesses() {
-        let (resource, places, need) = match access {
-            Access::Image { image, mips, usage } => {
-                (*image, mips.clone(), image_need(*usage, shaders, holds_depth(*image)))
-            }
-            Access::Buffer { buffer, usage } => (*buffer, 0..1, buffer_need(*usage, shaders)),
-        };
-        for place in places {
-            match merged.iter_mut().find(|(known, known_place, _)| (*known, *known_place) == (resource, place)) {
-                Some((_, _, known)) => {
-                    debug_assert_eq!(known.layout, need.layout, "{} uses one image in two layouts", pass.full_name());
-                    known.stages |= need.stages;
-                    known.access |= need.access;
-                    known.writes |= need.writes;
-                    known.discards &= need.discards;
-                }
-                None => merged.push((resource, place, need)),
-            }
-        }
-    }
-    merged
-}
-
-fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2, holds_depth: bool) -> Need {
-    use vk::AccessFlags2 as A;
-    use vk::PipelineStageFlags2 as S;
-    let depth_stages = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
-    let (stages, access, writes, discards) = match usage {
-        ImageUse::Sampled(_) => (shaders, A::SHADER_SAMPLED_READ, false, false),
-        ImageUse::StorageRead => (shaders, A::SHADER_STORAGE_READ, false, false),
-        ImageUse::StorageWrite => (shaders, A::SHADER_STORAGE_WRITE, true, true),
-        ImageUse::StorageModify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true, false),
-        ImageUse::Color { keep } => {
-            (S::COLOR_ATTACHMENT_OUTPUT, A::COLOR_ATTACHMENT_READ | A::COLOR_ATTACHMENT_WRITE, true, !keep)
-        }
-        ImageUse::Depth { keep } => {
-            (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE, true, !keep)
-        }
-        ImageUse::DepthTest => (depth_stages, A::DEPTH_STENCIL_ATTACHMENT_READ, false, false),
-        ImageUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true, true),
-    };
-    Need { stages, access, layout: layout_of(usage, holds_depth), writes, discards }
-}
-
-fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {
-    use vk::AccessFlags2 as A;
-    use vk::PipelineStageFlags2 as S;
-    let (stages, access, writes) = match usage {
-        BufferUse::Uniform => (shaders, A::UNIFORM_READ, false),
-        BufferUse::Read => (shaders, A::SHADER_STORAGE_READ, false),
-        BufferUse::Texels(_) => (shaders, A::SHADER_SAMPLED_READ, false),
-        BufferUse::Write => (shaders, A::SHADER_STORAGE_WRITE, true),
-        BufferUse::Modify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true),
-        BufferUse::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, false),
-        BufferUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true),
-    };
-    Need { stages, access, layout: vk::ImageLayout::UNDEFINED, writes, discards: false }
 }

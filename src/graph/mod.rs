@@ -18,7 +18,9 @@ pub(crate) mod bindings;
 pub(crate) mod demand;
 mod describe;
 mod execute;
+mod needs;
 mod pass;
+mod read_back;
 mod store;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
