@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod output;
+pub mod reference;
 pub mod renderer;
 pub mod scene;
 

@@ -1,0 +1,66 @@
+//! The truth: images by unbiased light transport, split into slots by their definition, with an honest estimate of their noise.
+//!
+//! A reference is made of samples of two independent halves, A and B, which differ in the scrambling of their sample sequences. The
+//! image is the mean over all samples; half the difference of the halves' means has the variance of that mean, which is the
+//! noise that reports state.
+
+use serde::{Deserialize, Serialize};
+
+use crate::renderer::Error;
+use crate::scene::CameraView;
+
+/// How light transport is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// Path tracing with next-event estimation, and light tracing for what it finds badly.
+    Path,
+    /// Stochastic progressive photon mapping, for caustics that are seen in mirrors or through glass.
+    Sppm,
+}
+
+/// Where in a pixel light is sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PixelFilter {
+    /// At its centre, as rasterisation does.
+    #[default]
+    Center,
+    /// Evenly all over it.
+    Box,
+}
+
+/// What a reference shows; the samples to come do not change it, they only lessen its noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceRequest {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Where the picture is taken from.
+    pub camera: CameraView,
+    /// How light transport is estimated.
+    pub estimator: Estimator,
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone; `None`: no limit.
+    pub bounces: Option<u32>,
+    /// Where in a pixel light is sampled.
+    pub filter: PixelFilter,
+    /// Which of the equally good sequences of samples is taken.
+    pub seed: u32,
+}
+
+/// Sums of radiance over some samples of every pixel, W/(m² sr).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlotSums {
+    /// Samples of each pixel that were added up.
+    pub samples: u32,
+    /// One row-major image for each of [`crate::renderer::Slot::ALL`].
+    pub slots: [Vec<[f32; 3]>; 5],
+}
+
+/// Whoever can add up samples of a reference.
+pub trait SampleSource {
+    /// The sums over the samples `first .. first + count` of half `half`, 0 or 1. The same arguments give the same bits.
+    ///
+    /// # Errors
+    /// Exhausted device memory, a lost device.
+    fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error>;
+}
