@@ -4,10 +4,40 @@
 //! image is the mean over all samples; half the difference of the halves' means has the variance of that mean, which is the
 //! noise that reports state.
 
+//!
+//! ```text
+//! source ──▶ blocks ──▶ file ──▶ cache, shards
+//! (samples)  (exact      └────▶ result (images, noise)
+//!             sums)
+//! ```
+
+mod about;
+mod blocks;
+mod cache;
+mod error;
+mod file;
+mod key;
+mod noise;
+mod obtain;
+mod result;
+mod shard;
+#[cfg(test)]
+mod tests;
+
 use serde::{Deserialize, Serialize};
 
-use crate::renderer::Error;
-use crate::scene::CameraView;
+pub use self::blocks::CHUNK_SAMPLES;
+pub use self::cache::{Cache, Entry, EntryContent};
+pub use self::error::ReferenceError;
+pub use self::file::ReferenceFile;
+pub use self::key::{REFERENCE_VERSION, ReferenceKey, estimator_name, filter_name};
+pub use self::noise::Noise;
+pub use self::obtain::{Goal, Job, MAX_SPP, Progress, obtain};
+pub(crate) use self::result::sum;
+pub use self::result::{IMAGE, Reference};
+pub use self::shard::{Shard, merge};
+use crate::renderer::{Context, Error};
+use crate::scene::{CameraView, Scene};
 
 /// How light transport is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -63,4 +93,21 @@ pub trait SampleSource {
     /// # Errors
     /// Exhausted device memory, a lost device.
     fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error>;
+
+    /// Rays traced so far; 0 if they are not counted.
+    fn rays(&self) -> u64 {
+        0
+    }
+}
+
+/// Who adds up the samples of what `request` asks of `scene`.
+///
+/// # Errors
+/// An estimator that there is not; exhausted device memory.
+fn source<'a>(
+    _context: &'a Context,
+    _scene: &'a Scene,
+    request: &'a ReferenceRequest,
+) -> Result<Box<dyn SampleSource + 'a>, Error> {
+    Err(Error::Estimator(estimator_name(request.estimator)))
 }
