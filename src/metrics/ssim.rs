@@ -103,6 +103,34 @@ mod tests {
     }
 
     #[test]
+    fn windows_are_those_of_the_definition() {
+        let size = [17, 14];
+        let pattern =
+            |factor: usize| grey((0..size[0] * size[1]).map(move |index| (index * factor % 101) as f64 / 101.0));
+        let shown = Pair { image: pattern(37), reference: pattern(59) };
+        let weight =
+            |x: usize, y: usize| (-((x as f64 - 5.0).powi(2) + (y as f64 - 5.0).powi(2)) / (2.0 * 1.5 * 1.5)).exp();
+        let window = || (0..11).flat_map(|y| (0..11).map(move |x| (x, y)));
+        let total: f64 = window().map(|(x, y)| weight(x, y)).sum();
+        let mut similarities = Vec::new();
+        for (left, top) in (0..4).flat_map(|top| (0..7).map(move |left| (left, top))) {
+            let value = |of: &[[f32; 3]], (x, y): (usize, usize)| f64::from(of[(top + y) * size[0] + left + x][0]);
+            let mean = |of: &dyn Fn((usize, usize)) -> f64| {
+                window().map(|at| weight(at.0, at.1) * of(at)).sum::<f64>() / total
+            };
+            let (x, r) = (|at| value(&shown.image, at), |at| value(&shown.reference, at));
+            let (mean_x, mean_r) = (mean(&x), mean(&r));
+            let covariance = mean(&|at| (x(at) - mean_x) * (r(at) - mean_r));
+            let variances = mean(&|at| (x(at) - mean_x).powi(2)) + mean(&|at| (r(at) - mean_r).powi(2));
+            let luminance = (2.0 * mean_x * mean_r + C1) / (mean_x.powi(2) + mean_r.powi(2) + C1);
+            similarities.push(luminance * (2.0 * covariance + C2) / (variances + C2));
+        }
+        let expected = similarities.iter().sum::<f64>() / similarities.len() as f64;
+        let found = ssim(size, &shown);
+        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+    }
+
+    #[test]
     fn windows_fit_and_weigh_one() {
         for (side, length) in [(1, 1), (2, 1), (3, 3), (10, 9), (11, 11), (12, 11), (4000, 11)] {
             let weights = window(side);
