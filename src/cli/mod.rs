@@ -10,6 +10,7 @@ mod devices;
 mod files;
 mod graph;
 mod method_args;
+mod reference;
 mod render;
 mod scene_args;
 mod scenes;
@@ -72,6 +73,7 @@ enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
     Compare(compare::CompareArgs),
+    Reference(reference::ReferenceArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -92,6 +94,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
         Command::Compare(args) => compare::run(args, &invocation),
+        Command::Reference(args) => reference::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),

@@ -236,7 +236,8 @@ fn decode(path: &Path, bytes: &[u8]) -> Result<Layers, OutputError> {
     let failed = |error: ::exr::error::Error| OutputError::read(path, error);
     // The decoder believes the header; a damaged one can ask for more memory than there is.
     let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
-    let asked = meta.headers.iter().map(|header| header.layer_size.area() as u64 * header.channels.bytes_per_pixel as u64);
+    let asked =
+        meta.headers.iter().map(|header| header.layer_size.area() as u64 * header.channels.bytes_per_pixel as u64);
     if asked.fold(0, u64::saturating_add) > MOST_COMPRESSION * bytes.len() as u64 {
         return Err(OutputError::read(path, "it is damaged: it is too small for the images that it says it has"));
     }

@@ -71,7 +71,8 @@ impl About {
                 "it is of version {version} of how references are made, this is version {REFERENCE_VERSION}; make it anew"
             ));
         }
-        let attributes = NAMES.iter().map(|name| Ok(((*name).to_owned(), value(name)?))).collect::<Result<_, String>>()?;
+        let attributes =
+            NAMES.iter().map(|name| Ok(((*name).to_owned(), value(name)?))).collect::<Result<_, String>>()?;
         Ok(About { key, size, attributes })
     }
 
@@ -84,7 +85,9 @@ impl About {
 fn camera_view(camera: &CameraView) -> String {
     let matrix = &camera.world.matrix3;
     let projection = match camera.projection {
-        Projection::Perspective { vertical_fov, aspect: _, near } => json!({"vertical_fov": vertical_fov, "near": near}),
+        Projection::Perspective { vertical_fov, aspect: _, near } => {
+            json!({"vertical_fov": vertical_fov, "near": near})
+        }
         Projection::Orthographic { half_width, half_height, near, far } => {
             json!({"half_width": half_width, "half_height": half_height, "near": near, "far": far})
         }

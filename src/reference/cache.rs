@@ -111,7 +111,8 @@ impl Cache {
     /// # Errors
     /// As [`Cache::write`].
     pub fn keep(&self, file: &ReferenceFile) -> Result<PathBuf, OutputError> {
-        let present = self.find(file.key()).filter(|_| self.read(file.key()).is_some_and(|old| old.spp() >= file.spp()));
+        let present =
+            self.find(file.key()).filter(|_| self.read(file.key()).is_some_and(|old| old.spp() >= file.spp()));
         present.map_or_else(|| self.write(file), Ok)
     }
 
@@ -128,7 +129,9 @@ impl Cache {
     pub fn clear(&self, prefix: Option<&str>) -> Result<Vec<Entry>, ReferenceError> {
         let mut entries = self.list();
         if let Some(prefix) = prefix {
-            let begins = |entry: &Entry| key_in_name(&entry.path).is_some_and(|key| prefix.starts_with(key) || key.starts_with(prefix));
+            let begins = |entry: &Entry| {
+                key_in_name(&entry.path).is_some_and(|key| prefix.starts_with(key) || key.starts_with(prefix))
+            };
             entries.retain(|entry| begins(entry) && !prefix.is_empty());
             if entries.is_empty() {
                 return Err(ReferenceError::NotCached(prefix.to_owned()));
@@ -166,7 +169,8 @@ fn key_in_name(path: &Path) -> Option<&str> {
 /// `SCENE-WxH-KEY.exr`; what is harmful in a scene's name becomes `_`.
 fn file_name(about: &About) -> String {
     let [width, height] = about.size;
-    let harmless = |character: char| if character.is_alphanumeric() || "-_".contains(character) { character } else { '_' };
+    let harmless =
+        |character: char| if character.is_alphanumeric() || "-_".contains(character) { character } else { '_' };
     // Names of files are limited to 255 bytes.
     let scene: String = about.attribute("scene").chars().take(48).map(harmless).collect();
     format!("{scene}-{width}x{height}-{}{EXTENSION}", about.key.prefix())

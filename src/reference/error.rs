@@ -51,7 +51,9 @@ pub enum ReferenceError {
         samples: String,
     },
     /// A shard without samples.
-    #[error("shard {shard} of {spp} samples per pixel is empty, for samples come in portions of {portion}; ask for fewer shards or more samples")]
+    #[error(
+        "shard {shard} of {spp} samples per pixel is empty, for samples come in portions of {portion}; ask for fewer shards or more samples"
+    )]
     EmptyShard {
         /// The shard.
         shard: super::Shard,

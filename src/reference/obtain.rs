@@ -140,7 +140,11 @@ impl Work<'_> {
                 break;
             }
             let next = if goal.noise.is_some() { most.min((2 * finished).max(1)) } else { most };
-            self.fill(&mut file, 0..next, &mut saver, &mut counted)?;
+            let filled = self.fill(&mut file, 0..next, &mut saver, &mut counted);
+            if filled.is_err() {
+                saver.finish(&file);
+            }
+            filled?;
         }
         saver.finish(&file);
         Ok(file)
@@ -168,7 +172,11 @@ impl Work<'_> {
         }
         let missing = file.state.missing(chunks.clone());
         let mut saver = Saver::new(|file: &ReferenceFile| file.write(path));
-        self.fill(&mut file, chunks, &mut saver, &mut Counted::new(&missing, progress))?;
+        let filled = self.fill(&mut file, chunks, &mut saver, &mut Counted::new(&missing, progress));
+        if filled.is_err() {
+            saver.finish(&file);
+        }
+        filled?;
         file.write(path)?;
         Ok(file)
     }

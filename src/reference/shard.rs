@@ -66,10 +66,10 @@ pub fn merge(paths: &[PathBuf]) -> Result<ReferenceFile, ReferenceError> {
         spp = spp.max(wanted(&file));
         merged.spent.add(&file.spent);
         for block in file.state.into_blocks() {
-            merged.state.insert(block).map_err(|overlap| ReferenceError::Double {
-                path: path.clone(),
-                samples: samples(&overlap.0),
-            })?;
+            merged
+                .state
+                .insert(block)
+                .map_err(|overlap| ReferenceError::Double { path: path.clone(), samples: samples(&overlap.0) })?;
         }
     }
     let missing = merged.state.missing(0..chunks_of(spp).max(merged.state.end()));

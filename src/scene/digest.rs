@@ -45,7 +45,11 @@ impl Digest {
     }
 
     /// Whether there is a value, and the value.
-    pub(crate) fn option<T>(&mut self, value: Option<T>, add: impl FnOnce(&mut Digest, T) -> &mut Digest) -> &mut Digest {
+    pub(crate) fn option<T>(
+        &mut self,
+        value: Option<T>,
+        add: impl FnOnce(&mut Digest, T) -> &mut Digest,
+    ) -> &mut Digest {
         self.flag(value.is_some());
         if let Some(value) = value {
             add(self, value);

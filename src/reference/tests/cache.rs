@@ -18,7 +18,10 @@ fn only_what_is_missing_is_made() {
     assert_eq!(maker.make(16, Some(&cache)).spp(), 112, "more samples than asked for are used as they are");
     assert_eq!(made(), 0);
     let mut steps = Vec::new();
-    maker.work().make(144.into(), Some(&cache), &mut |progress| steps.push((progress.done, progress.total))).expect("made");
+    maker
+        .work()
+        .make(144.into(), Some(&cache), &mut |progress| steps.push((progress.done, progress.total)))
+        .expect("made");
     assert_eq!(steps, [(0, 2), (1, 2), (2, 2)]);
 }
 

@@ -151,7 +151,8 @@ fn names_and_other_idle_things_do_not_count() {
         |parts| parts.request.camera.name = "another name".to_owned(),
         |parts| parts.primitive.source_bytes = 1000,
         |parts| {
-            parts.request.camera.projection = Projection::Perspective { vertical_fov: 1.0, aspect: Some(2.0), near: 0.1 };
+            parts.request.camera.projection =
+                Projection::Perspective { vertical_fov: 1.0, aspect: Some(2.0), near: 0.1 };
         },
     ];
     let key = Parts::new().key();

@@ -18,9 +18,12 @@ fn it_is_the_standard_error_of_the_mean_and_falls_with_the_root_of_the_samples()
             let ratio = noise.rrmse / predicted(index, samples);
             // 1152 values: one standard deviation is 2 %.
             assert!((ratio - 1.0).abs() < 0.08, "{slot} at {samples}: {ratio}");
-            let own = reference.slots[&slot].pixels.as_flattened().iter().enumerate().map(|(at, value)| {
-                (f64::from(*value) - expected(index, at / 3, at % 3)).powi(2)
-            });
+            let own = reference.slots[&slot]
+                .pixels
+                .as_flattened()
+                .iter()
+                .enumerate()
+                .map(|(at, value)| (f64::from(*value) - expected(index, at / 3, at % 3)).powi(2));
             let actual = (own.sum::<f64>() / 1152.0).sqrt();
             assert!((noise.rmse / actual - 1.0).abs() < 0.12, "{slot} at {samples}: {} {actual}", noise.rmse);
         }
