@@ -140,7 +140,8 @@ impl State {
     pub(crate) fn means(&self) -> Means {
         let pixel_count = self.blocks.values().next().map_or(0, |block| block.halves[0][0].len());
         let weight = 1.0 / f64::from(self.samples().max(1));
-        let slots = Slot::ALL.iter().enumerate().map(|(slot, _)| {
+        let (mut means, mut noise) = (Vec::new(), Vec::new());
+        for slot in 0..Slot::ALL.len() {
             let pixels = (0..pixel_count).into_par_iter().map(|pixel| {
                 let [a, b] = HALVES.map(|half| self.sum(half, slot, pixel));
                 // Each half has half of the samples, so its mean is its sum times 2·weight.
@@ -148,11 +149,14 @@ impl State {
                 let noise: [f64; 3] = std::array::from_fn(|channel| (a[channel] - b[channel]) * weight);
                 (mean, noise.map(|value| value as f32))
             });
-            pixels.unzip()
-        });
-        let (means, noise): (Vec<Vec<[f64; 3]>>, Vec<Vec<[f32; 3]>>) = slots.unzip();
+            let (mean, half_difference): (Vec<_>, Vec<_>) = pixels.unzip();
+            means.push(mean);
+            noise.push(half_difference);
+        }
         let image = (0..pixel_count).into_par_iter().map(|pixel| {
-            std::array::from_fn(|channel| means.iter().map(|slot| slot[pixel][channel]).sum::<f64>() as f32)
+            std::array::from_fn(|channel| {
+                means.iter().map(|slot: &Vec<[f64; 3]>| slot[pixel][channel]).sum::<f64>() as f32
+            })
         });
         let image = image.collect();
         let rounded = |pixels: Vec<[f64; 3]>| pixels.into_iter().map(|pixel| pixel.map(|value| value as f32)).collect();
