@@ -5,6 +5,8 @@
 
 pub(crate) mod atomic_file;
 mod exr;
+mod header;
+mod layers;
 mod png;
 mod seal;
 pub mod tonemap;
@@ -14,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 pub use self::atomic_file::{AtomicFile, check_target};
 pub use self::exr::{ExrImage, read_exr, write_exr};
-pub(crate) use self::exr::{SealedError, read_attributes, read_sealed_layers, write_sealed_layers};
+pub(crate) use self::layers::{SealedError, read_attributes, read_sealed_layers, write_sealed_layers};
 pub use self::png::write_png;
 
 /// What a picture is of, by name: scene, settings, device, version …

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::exr::attribute_ranges;
+use super::header::attribute_ranges;
 
 /// The attribute's name.
 pub(super) const ATTRIBUTE: &str = "checksum";

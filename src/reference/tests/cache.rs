@@ -90,3 +90,23 @@ fn merged_shards_do_not_replace_more_samples() {
         assert_eq!(cache.read(&maker.about.key).expect("cached").spp(), 64);
     }
 }
+
+#[test]
+fn who_reads_while_others_write_finds_a_whole_file() {
+    let folder = TestFolder::new("reference-concurrent");
+    let cache = Cache::at(&folder.0);
+    let maker = Maker::of(&request([5, 3]));
+    let files = [16, 48].map(|spp| maker.make(spp, None));
+    cache.write(&files[0]).expect("written");
+    std::thread::scope(|scope| {
+        for file in &files {
+            scope.spawn(|| (0..20).for_each(|_| drop(cache.write(file).expect("written"))));
+        }
+        for _ in 0..20 {
+            let path = cache.find(&maker.about.key).expect("always there");
+            let read = ReferenceFile::read(&path).expect("whole");
+            assert!(files.iter().any(|file| file.state == read.state));
+        }
+    });
+    assert_eq!(folder.names().len(), 1);
+}
