@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::statistics::Spread;
+pub use crate::metrics::ImageErrors;
 use crate::renderer::{DeviceReport, Slot};
 
 /// The schema that [`Report`] writes.
@@ -169,23 +170,6 @@ pub struct Reference {
     pub spp: u32,
     /// Scatterings between the light and the first visible surface; null if they are not limited.
     pub bounces: Option<u32>,
-}
-
-/// How far an image is from another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ImageErrors {
-    /// Root of the mean squared difference of linear radiance.
-    pub rmse: f64,
-    /// `rmse` over the mean of the reference.
-    pub rrmse: f64,
-    /// Mean of the squared difference over the squared reference, with ε = 1 % of the mean of the reference.
-    pub relmse: f64,
-    /// Peak signal-to-noise ratio of the tone-mapped images, dB.
-    pub psnr: f64,
-    /// Structural similarity of the tone-mapped images.
-    pub ssim: f64,
-    /// Mean FLIP.
-    pub flip: f64,
 }
 
 /// What could not be run, and why.

@@ -5,6 +5,7 @@
 
 mod attributes;
 mod bench;
+mod compare;
 mod devices;
 mod files;
 mod graph;
@@ -70,6 +71,7 @@ enum ValidationChoice {
 enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
+    Compare(compare::CompareArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -89,6 +91,7 @@ pub(crate) fn main() -> ExitCode {
     let done = match &cli.command {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
+        Command::Compare(args) => compare::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),
