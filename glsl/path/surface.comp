@@ -20,6 +20,9 @@ layout(constant_id = 3) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
 layout(constant_id = 4) const uint PIXEL_FOOTPRINT = 0u;
 // 1: lights send out paths of their own, so that camera paths carry the ratio C.
 layout(constant_id = 5) const uint LIGHT_PATHS = 1u;
+// 1: some mesh has vertex colors; some surface has a normal map and the tangents to use it.
+layout(constant_id = 6) const uint VERTEX_COLORS = 1u;
+layout(constant_id = 7) const uint NORMAL_MAPS = 1u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer active_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
@@ -155,7 +158,7 @@ bool meet_surface(uint path) {
     float cosine = abs(dot(face, ray.direction));
 
     Material material = load_material(materials, triangle.material);
-    vec4 color = textureSize(corner_colors) > 1 ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
+    vec4 color = VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
     MaterialPoint point = material_factors(material, color);
     vec3 normal_texel = vec3(0.0, 0.0, 1.0);
     if ((material.flags & TEXTURES & MATERIAL_ALL_TEXTURES) != 0u) {
@@ -218,7 +221,7 @@ bool meet_surface(uint path) {
     if (!triangle.flat_normals) {
         vec3 vertex_normal = normalize_or(interpolated(corner_normals, triangle, weights).xyz, face);
         vec3 mapped = vertex_normal;
-        if (has_texture(material, MATERIAL_NORMAL_TEXTURE) && textureSize(corner_tangents) > 1) {
+        if (NORMAL_MAPS != 0u && has_texture(material, MATERIAL_NORMAL_TEXTURE)) {
             vec4 tangent = interpolated(corner_tangents, triangle, weights);
             vec3 unit_tangent = normalize_or(tangent.xyz, vec3(0.0));
             vec3 bitangent = cross(vertex_normal, unit_tangent) * tangent.w;

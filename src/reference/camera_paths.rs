@@ -199,6 +199,8 @@ impl CameraPaths {
             textures: scene.texture_kinds,
             pixel_footprint: u32::from(view.filter == PixelFilter::Center && scene.facts.textured),
             light_paths: variants.light_paths,
+            vertex_colors: u32::from(scene.facts.vertex_colors),
+            normal_maps: u32::from(scene.facts.normal_mapped),
             push: shaders::SurfacePush {
                 sky: scene.sky,
                 depth,
