@@ -65,7 +65,8 @@ LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
     bool directional = light.kind == LIGHT_DIRECTIONAL;
     float distance = directional ? 3e38 : length(light.position_rs - position_rs);
     float cone = light.kind == LIGHT_SPOT ? 0.5 * (1.0 + light.spot_offset / light.spot_scale) : 1.0;
-    float emission = directional ? 1.0 / push.disc_area : 0.25 * INVERSE_PI / (max(cone, 1e-9) * max(distance * distance, 1e-30));
+    // Light paths leave out lights with a range (particle/emit.comp).
+    float emission = light.range > 0.0 ? 0.0 : directional ? 1.0 / push.disc_area : 0.25 * INVERSE_PI / (max(cone, 1e-9) * max(distance * distance, 1e-30));
     return LightSample(illumination.to_light, distance, illumination.irradiance / emitter.probability, 0.0, emission);
 }
 

@@ -25,6 +25,7 @@ const uint FLAG_ALL_SPECULAR = 32u;      // every vertex so far did
 const uint STREAM_CAMERA = 0u;
 const uint STREAM_LIGHT = 1u;            // + 2 · depth
 const uint STREAM_SCATTER = 2u;          // + 2 · depth
+const uint STREAM_EMISSION = 0x80000000u;
 
 struct Ray {
     vec3 origin;

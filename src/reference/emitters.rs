@@ -14,6 +14,8 @@ pub(super) struct EmitterTable {
     pub(super) records: Vec<[u32; 4]>,
     /// For each triangle the density with which a point of it is drawn, 1/m²; 0 if none is.
     pub(super) light_densities: Vec<f32>,
+    /// What all entries send out, W (luminance).
+    pub(super) power: f64,
 }
 
 struct Entry {
@@ -51,7 +53,7 @@ pub(super) fn emitter_table(
         let index = (entry.what & !TRIANGLE) as usize;
         light_densities[index] = (entry.power / total / triangles[index].area()) as f32;
     }
-    EmitterTable { records: alias_table(&entries, total), light_densities }
+    EmitterTable { records: alias_table(&entries, total), light_densities, power: total }
 }
 
 /// What an intensity times this is power.

@@ -6,6 +6,8 @@
 
 mod camera_paths;
 mod emitters;
+mod light_paths;
+mod paths;
 mod sobol;
 mod texels;
 mod traced_scene;

@@ -75,7 +75,8 @@ pub(crate) struct TracedScene {
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
     pub(crate) emitter_count: u32,
-    pub(crate) triangle_count: usize,
+    /// What all lights but the sky send out, W (luminance).
+    pub(super) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
 }
 
@@ -110,7 +111,7 @@ impl TracedScene {
         let facts = scene.facts();
         let (triangles, corners) = flatten(scene, origin, &facts)?;
         let lights = shining_lights(scene);
-        let EmitterTable { records: emitters, light_densities } =
+        let EmitterTable { records: emitters, light_densities, power } =
             emitter_table(&triangles, scene.materials(), &lights, radius);
         let records: Vec<[[u32; 4]; 4]> =
             triangles.iter().zip(&light_densities).map(|(triangle, density)| triangle.record(*density)).collect();
@@ -165,10 +166,16 @@ impl TracedScene {
                 .iter()
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
-            triangle_count: triangles.len(),
+            power,
             buffers,
         })
         .inspect(|_| tracing::debug!("traced scene of revision {revisions:?}"))
+    }
+
+    /// Whether lights send out paths of their own: where something glossy may gather their light, and more than direct light is
+    /// asked for. The sky alone does not: camera paths find it.
+    pub(super) fn needs_light_paths(&self, bounces: Option<u32>) -> bool {
+        self.facts.glossy && self.emitter_count > 0 && bounces != Some(0)
     }
 
     /// Device memory, bytes.

@@ -6,12 +6,14 @@
 
 use std::sync::Arc;
 
-use super::camera_paths::{CameraPaths, Wave};
+use super::camera_paths::{self, Sums, Wave};
+use super::light_paths::{self, Splats, Swarm, add_splats};
+use super::paths::Paths;
 use super::traced_scene::TracedScene;
 pub(crate) use super::traced_scene::traced_key;
 use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::frame::camera::camera;
-use crate::graph::{Graph, Store};
+use crate::graph::{Executed, Graph, Store};
 use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
@@ -51,6 +53,13 @@ pub(crate) struct View {
     pub(crate) bounces: Option<u32>,
     pub(crate) filter: PixelFilter,
     pub(crate) seed: u32,
+}
+
+impl View {
+    /// Pixels, and light paths a sample.
+    pub(super) fn pixel_count(&self) -> f32 {
+        self.size[0] as f32 * self.size[1] as f32
+    }
 }
 
 impl PathTracer {
@@ -111,23 +120,25 @@ impl PathTracer {
     /// The sums over samples `first .. first + count` of half `half` of every pixel.
     pub(crate) fn sums(&mut self, view: &View, half: u32, first: u32, count: u32) -> Result<SlotSums, VulkanError> {
         let [width, height] = view.size;
-        let blocks_per_row = width.div_ceil(8);
-        let blocks = blocks_per_row * height.div_ceil(8);
+        let blocks = width.div_ceil(8) * height.div_ceil(8);
         let pixels = width as usize * height as usize;
         let mut sums = SlotSums { samples: count, slots: std::array::from_fn(|_| vec![[0.0; 3]; pixels]) };
         // Runs of blocks of equal length, so that the memory serves all.
-        let runs = (blocks * 64).div_ceil(WAVE_PATHS).max(1);
-        let blocks_per_run = blocks.div_ceil(runs);
+        let blocks_per_run = blocks_per_run(blocks);
         for first_block in (0..blocks).step_by(blocks_per_run as usize) {
             let block_count = blocks_per_run.min(blocks - first_block);
-            let texels = self.run_of_blocks(view, [first_block, block_count], half, [first, count])?;
+            let texels = self.trace_from_camera(view, [first_block, block_count], half, [first, count])?;
             scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
+        }
+        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        if scene.needs_light_paths(view.bounces) {
+            self.trace_from_lights(view, half, [first, count], &mut sums)?;
         }
         Ok(sums)
     }
 
     /// The sums of the pixels of some blocks: [`Slot::ALL`] after each other, in the order of paths.
-    fn run_of_blocks(
+    fn trace_from_camera(
         &mut self,
         view: &View,
         [first_block, block_count]: [u32; 2],
@@ -135,60 +146,141 @@ impl PathTracer {
         [first, count]: [u32; 2],
     ) -> Result<Vec<[f32; 4]>, VulkanError> {
         let scene = self.scene.as_ref().expect("prepared before it is traced");
-        let paths_per_sample = 64 * block_count;
-        let samples_per_wave = (WAVE_PATHS / paths_per_sample).clamp(1, count.max(1));
-        let mut done = 0;
+        let capacity = capacity(view, count);
+        let samples_per_wave = (capacity / (64 * block_count)).min(count);
         let mut texels = Vec::new();
-        while done < count {
-            let samples = samples_per_wave.min(count - done);
-            let mut wave = Wave {
+        for done in (0..count).step_by(samples_per_wave as usize) {
+            let wave = Wave {
                 first_block,
                 block_count,
-                sample_count: samples,
-                path_capacity: paths_per_sample * samples_per_wave,
+                sample_count: samples_per_wave.min(count - done),
                 first_sample: first + done,
-                seed: view.seed.wrapping_mul(2).wrapping_add(half),
-                clear_sums: done == 0,
-                depth: 0,
+                seed: seed_of_half(view.seed, half),
             };
-            done += samples;
-            let depths = view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(2));
+            let mut depth = 0;
             loop {
-                let until = wave.depth.saturating_add(DEPTHS_PER_SUBMISSION).min(depths);
                 let mut graph = Graph::new(&mut self.store);
-                let mut paths = CameraPaths::declare(&mut graph, scene, view, &wave);
-                if wave.depth == 0 {
-                    paths.generate(&mut graph, view, &wave);
-                }
-                for depth in wave.depth..until {
-                    paths.advance(&mut graph, scene, view, depth);
-                }
-                paths.resolve(&mut graph, &wave);
-                let last = until == depths;
-                let read_back = (done == count).then(|| paths.read_sums(&mut graph));
-                paths.want(&mut graph);
-                let mut executed = graph.run(self.timing)?;
-                self.cost.add(&executed.passes, executed.gpu_ms, executed.pipeline_ms);
-                let alive = executed.passes.iter().rev().find_map(|pass| pass.work.get("paths on").copied());
-                wave.depth = until;
-                wave.clear_sums = false;
-                if last || alive.unwrap_or(0) == 0 {
-                    if let Some(read_back) = read_back {
-                        texels = bytemuck::pod_collect_to_vec(&executed.take(read_back));
+                let paths = Paths::declare(&mut graph, scene, view, capacity);
+                let sums = Sums::declare(&mut graph, &wave);
+                if depth == 0 {
+                    if done == 0 {
+                        sums.clear(&mut graph, &paths);
                     }
+                    camera_paths::generate(&mut graph, &paths, view, &wave);
+                }
+                let until = last_depth(view, depth, 1);
+                for depth in depth..until {
+                    camera_paths::advance(&mut graph, &paths, scene, view, depth);
+                }
+                depth = until;
+                paths.want(&mut graph);
+                graph.want_buffer(paths.radiance);
+                if self.cost.add(graph.run(self.timing)?) == 0 {
                     break;
                 }
             }
+            let mut graph = Graph::new(&mut self.store);
+            let paths = Paths::declare(&mut graph, scene, view, capacity);
+            let sums = Sums::declare(&mut graph, &wave);
+            sums.add(&mut graph, &paths, &wave);
+            graph.want_buffer(paths.radiance);
+            let last = done + wave.sample_count == count;
+            let read_back = last.then(|| sums.read_back(&mut graph));
+            let mut executed = graph.run(self.timing)?;
+            if let Some(read_back) = read_back {
+                texels = bytemuck::pod_collect_to_vec(&executed.take(read_back));
+            }
+            self.cost.add(executed);
         }
         Ok(texels)
     }
+
+    /// Adds what light paths find, one path a pixel and sample.
+    fn trace_from_lights(
+        &mut self,
+        view: &View,
+        half: u32,
+        [first, count]: [u32; 2],
+        sums: &mut SlotSums,
+    ) -> Result<(), VulkanError> {
+        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let limit = self.store.device().limits().max_storage_buffer_range;
+        let all = view.size[0] * view.size[1];
+        let capacity = capacity(view, count);
+        for sample in first..first + count {
+            for first_path in (0..all).step_by(capacity as usize) {
+                let swarm = Swarm {
+                    first_path,
+                    path_count: capacity.min(all - first_path),
+                    seed: seed_of_sample(seed_of_half(view.seed, half), sample),
+                };
+                let mut depth = 0;
+                loop {
+                    let mut graph = Graph::new(&mut self.store);
+                    let paths = Paths::declare(&mut graph, scene, view, capacity);
+                    let splats = Splats::declare(&mut graph, scene, view, limit)?;
+                    if depth == 0 {
+                        if sample == first && first_path == 0 {
+                            splats.clear(&mut graph);
+                        }
+                        light_paths::emit(&mut graph, &paths, scene, view, &swarm);
+                    }
+                    let until = last_depth(view, depth, 0);
+                    for depth in depth..until {
+                        light_paths::advance(&mut graph, &paths, &splats, scene, view, depth);
+                    }
+                    depth = until;
+                    paths.want(&mut graph);
+                    splats.want(&mut graph);
+                    if self.cost.add(graph.run(self.timing)?) == 0 {
+                        break;
+                    }
+                }
+            }
+        }
+        let mut graph = Graph::new(&mut self.store);
+        let splats = Splats::declare(&mut graph, scene, view, limit)?;
+        let read_back = splats.read_back(&mut graph);
+        let mut executed = graph.run(self.timing)?;
+        add_splats(sums, &executed.take(read_back), scene);
+        self.cost.add(executed);
+        Ok(())
+    }
+}
+
+fn blocks_per_run(blocks: u32) -> u32 {
+    let runs = (blocks * 64).div_ceil(WAVE_PATHS).max(1);
+    blocks.div_ceil(runs)
+}
+
+/// Paths that memory is held for, when `count` samples of every pixel are taken.
+fn capacity(view: &View, count: u32) -> u32 {
+    let paths = 64 * blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
+    paths * (WAVE_PATHS / paths).clamp(1, count.max(1))
+}
+
+/// Up to which vertex a submission goes that starts with vertex number `depth`; the last vertex has number `bounces + beyond`.
+fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
+    let all = view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(1 + beyond));
+    (depth + DEPTHS_PER_SUBMISSION).min(all)
+}
+
+fn seed_of_half(seed: u32, half: u32) -> u32 {
+    seed.wrapping_mul(2).wrapping_add(half)
+}
+
+/// A seed for each sample of a half, different from those of the pixels' sequences.
+fn seed_of_sample(seed: u32, sample: u32) -> u32 {
+    let mixed = (u64::from(seed) << 32 | u64::from(sample)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    ((mixed ^ mixed >> 29) >> 32) as u32 ^ sample.rotate_left(16)
 }
 
 impl TraceCost {
-    fn add(&mut self, passes: &[PassTiming], gpu_ms: f64, pipeline_ms: f64) {
-        self.gpu_ms += gpu_ms;
-        self.pipeline_ms += pipeline_ms;
-        for pass in passes {
+    /// Adds a submission. Returns how many paths go on from it.
+    fn add(&mut self, executed: Executed) -> u64 {
+        self.gpu_ms += executed.gpu_ms;
+        self.pipeline_ms += executed.pipeline_ms;
+        for pass in &executed.passes {
             self.rays += pass.work.get("rays").copied().unwrap_or(0);
             let same = |known: &&mut PassTiming| known.piece == pass.piece && known.pass == pass.pass;
             match self.passes.iter_mut().find(same) {
@@ -207,6 +299,7 @@ impl TraceCost {
                 None => self.passes.push(pass.clone()),
             }
         }
+        executed.passes.iter().rev().find_map(|pass| pass.work.get("paths on").copied()).unwrap_or(0)
     }
 }
 
