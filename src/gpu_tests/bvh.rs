@@ -1,82 +1,17 @@
-//! Rays through the hierarchy against all triangles one by one in f64; closed surfaces; what must not break it.
+//! Rays through the hierarchy against all triangles one by one in f64, and what must not break it.
 
-use ash::vk;
 use glam::{DVec3, Vec3};
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::{Rng, SeedableRng};
 
+use super::rays::{FLOATS, NO_TRIANGLE, NODES, Random, Ray, Traced, ray, trace};
 use super::session::Session;
 use crate::graph::{Dependence, Graph};
 use crate::renderer::Timing;
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::shaders::selftest::{LeaveSurface, MaskedHit};
-use crate::shaders::trace::{Closest, Occluded};
+use crate::shaders::selftest::MaskedHit;
 use crate::shaders::types;
 
-const NODES: vk::Format = vk::Format::R32G32B32A32_UINT;
-const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-const NO_TRIANGLE: u32 = u32::MAX;
-/// How much nearer than the accuracy of a hit's weights a ray must pass an edge before the test takes no side.
+/// Where a ray passes an edge, an end or another surface nearer than this share, either answer is right.
 const UNSURE: f64 = 1e-4;
-
-/// Origin, end, direction, nothing.
-type Ray = [[f32; 4]; 2];
-
-fn ray(origin: Vec3, direction: Vec3, end: f32) -> Ray {
-    [origin.extend(end).to_array(), direction.extend(0.0).to_array()]
-}
-
-struct Random(Pcg32);
-
-impl Random {
-    fn new(seed: u64) -> Random {
-        Random(Pcg32::seed_from_u64(seed))
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        self.0.next_u32() as usize % count
-    }
-
-    /// From -1 to 1.
-    fn signed(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0
-    }
-
-    fn point(&mut self) -> Vec3 {
-        Vec3::from_array([0; 3].map(|_| self.signed()))
-    }
-}
-
-/// The nearest hits, and whether the rays are blocked.
-fn trace(session: &Session, bvh: &Bvh, rays: &[Ray]) -> (Vec<types::Hit>, Vec<bool>) {
-    let mut store = session.store();
-    let mut graph = Graph::new(&mut store);
-    let nodes = graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE);
-    let triangles = graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE);
-    let list = graph.upload("rays", rays, Dependence::NONE);
-    let hits = graph.buffer::<types::Hit>("hits", rays.len());
-    let blocked = graph.buffer::<u32>("blocked", rays.len());
-    let threads = [rays.len() as u32, 1, 1];
-    let closest = Closest {
-        bvh_nodes: nodes.texels(NODES),
-        bvh_triangles: triangles.texels(FLOATS),
-        rays: list.texels(FLOATS),
-        hits: hits.write(),
-    };
-    graph.pass("test/closest", closest).threads(threads);
-    let occluded = Occluded {
-        bvh_nodes: nodes.texels(NODES),
-        bvh_triangles: triangles.texels(FLOATS),
-        rays: list.texels(FLOATS),
-        blocked: blocked.write(),
-    };
-    graph.pass("test/occluded", occluded).threads(threads);
-    let reads = (graph.read_back_buffer(hits), graph.read_back_buffer(blocked));
-    let mut executed = graph.run(Timing::Frame).expect("a frame");
-    let hits = bytemuck::pod_collect_to_vec(&executed.take(reads.0));
-    let blocked = bytemuck::pod_collect_to_vec::<u8, u32>(&executed.take(reads.1));
-    (hits, blocked.into_iter().map(|word| word == 1).collect())
-}
 
 /// Distance and weights of the corners where the line of a ray meets the plane of a triangle (Möller & Trumbore).
 fn plane_hit(triangle: &BvhTriangle, ray: &Ray) -> Option<(f64, DVec3)> {
@@ -94,7 +29,7 @@ fn plane_hit(triangle: &BvhTriangle, ray: &Ray) -> Option<(f64, DVec3)> {
     Some((ac.dot(around) / determinant, DVec3::new(1.0 - u - v, u, v)))
 }
 
-/// Checks a hit against all triangles. Where a ray passes an edge, an end or another surface too closely, either answer is right.
+/// Checks a hit against all triangles.
 fn check(triangles: &[BvhTriangle], extent: f64, ray: &Ray, hit: &types::Hit, blocked: bool) -> Result<(), String> {
     let length = DVec3::new(f64::from(ray[1][0]), f64::from(ray[1][1]), f64::from(ray[1][2])).length();
     let unsure = UNSURE * extent / length;
@@ -177,14 +112,14 @@ fn rays_about(random: &mut Random, count: usize, scale: f32) -> Vec<Ray> {
 fn hits_are_those_of_all_triangles_one_by_one() {
     let session = Session::open();
     for (seed, count, scale) in
-        [(1, 1, 1.0), (2, 5, 1.0), (3, 60, 1.0), (4, 700, 1.0), (5, 300, 1e-9), (6, 300, 1e-3), (7, 300, 1e9)]
+        [(1, 1, 1.0), (2, 5, 1.0), (3, 60, 1.0), (4, 500, 1.0), (5, 300, 1e-9), (6, 300, 1e-3), (7, 300, 1e9)]
     {
         let mut random = Random::new(seed);
         let triangles = soup(&mut random, count, scale);
-        let rays = rays_about(&mut random, 3000, scale);
+        let rays = rays_about(&mut random, 800, scale);
         // The second tree is what stands in for one that is too deep.
         for bvh in [Bvh::build(&triangles), Bvh::build_within(&triangles, 0)] {
-            let (hits, blocked) = trace(&session, &bvh, &rays);
+            let Traced { hits, blocked, .. } = trace(&session, &bvh, &rays);
             let mut hit_count = 0;
             for ((ray, hit), &blocked) in rays.iter().zip(&hits).zip(&blocked) {
                 if let Err(fault) = check(&triangles, f64::from(scale), ray, hit, blocked) {
@@ -193,57 +128,9 @@ fn hits_are_those_of_all_triangles_one_by_one() {
                 hit_count += usize::from(blocked);
             }
             println!("seed {seed}: {hit_count} of {} rays hit", rays.len());
-            assert!(count < 60 || (100..2900).contains(&hit_count));
+            assert!(count < 60 || (40..760).contains(&hit_count));
         }
     }
-}
-
-/// A sphere of `rings` times `2·rings` quads, the poles shared by thin triangles.
-fn sphere(rings: usize, center: Vec3, radius: f32) -> Vec<BvhTriangle> {
-    use std::f64::consts::PI;
-    let corner = |ring: usize, segment: usize| {
-        let (polar, around) = (PI * ring as f64 / rings as f64, PI * (segment % (2 * rings)) as f64 / rings as f64);
-        let sine = if ring == rings { 0.0 } else { polar.sin() };
-        (center + DVec3::new(sine * around.cos(), polar.cos(), sine * around.sin()).as_vec3() * radius).to_array()
-    };
-    let quad = |ring: usize, segment: usize| {
-        let [a, b] = [corner(ring, segment), corner(ring, segment + 1)];
-        let [c, d] = [corner(ring + 1, segment), corner(ring + 1, segment + 1)];
-        [[a, b, d], [a, d, c]].map(|corners| BvhTriangle { corners, flags: 0 })
-    };
-    let all = (0..rings).flat_map(|ring| (0..2 * rings).flat_map(move |segment| quad(ring, segment)));
-    all.filter(|triangle| triangle.corners[0] != triangle.corners[1] && triangle.corners[1] != triangle.corners[2])
-        .collect()
-}
-
-#[test]
-fn no_ray_leaves_a_closed_surface_through_an_edge_or_a_corner() {
-    let session = Session::open();
-    let mut random = Random::new(11);
-    let mut leaks = 0;
-    for (center, radius) in
-        [(Vec3::ZERO, 1.0), (Vec3::new(300.0, -70.0, 1000.0), 1.0), (Vec3::ZERO, 1e-6), (Vec3::ONE, 1e6)]
-    {
-        let triangles = sphere(40, center, radius);
-        let bvh = Bvh::build(&triangles);
-        let one = |_| {
-            let corners = triangles[random.below(triangles.len())].corners.map(Vec3::from);
-            let along = [0.0, 0.5, 0.5 + 0.5 * random.signed()][random.below(3)];
-            let target = corners[0] + (corners[1 + random.below(2)] - corners[0]) * along;
-            let origin = center + random.point() * radius * 0.5;
-            ray(origin, target - origin, 2.0)
-        };
-        let rays: Vec<Ray> = (0..250_000).map(one).collect();
-        let (hits, blocked) = trace(&session, &bvh, &rays);
-        for ((ray, hit), blocked) in rays.iter().zip(&hits).zip(blocked) {
-            let near = (hit.distance - 1.0).abs() < 1e-2;
-            if !(blocked && hit.triangle != NO_TRIANGLE && near) {
-                leaks += 1;
-                println!("{ray:?} leaves the sphere of radius {radius} at {center}: {hit:?}");
-            }
-        }
-    }
-    assert_eq!(leaks, 0);
 }
 
 #[test]
@@ -255,11 +142,11 @@ fn nothing_is_hit_where_nothing_is_and_odd_rays_end() {
     let rays: Vec<Ray> = (0..4096).map(one).collect();
     let flat = BvhTriangle { corners: [[1.0; 3], [2.0; 3], [3.0; 3]], flags: 0 };
     for triangles in [vec![], vec![flat; 5]] {
-        let (hits, blocked) = trace(&session, &Bvh::build(&triangles), &rays);
+        let Traced { hits, blocked, .. } = trace(&session, &Bvh::build(&triangles), &rays);
         assert!(hits.iter().all(|hit| hit.triangle == NO_TRIANGLE) && !blocked.contains(&true));
     }
     let triangles = soup(&mut random, 500, 1.0);
-    let (hits, _) = trace(&session, &Bvh::build(&triangles), &rays);
+    let Traced { hits, .. } = trace(&session, &Bvh::build(&triangles), &rays);
     assert!(hits.iter().all(|hit| hit.triangle == NO_TRIANGLE || (hit.triangle as usize) < triangles.len()));
 }
 
@@ -290,50 +177,4 @@ fn a_flagged_triangle_is_met_only_where_the_shader_accepts_it() {
     let found: Vec<types::MaskedHit> = bytemuck::pod_collect_to_vec(&bytes);
     let found: Vec<(u32, u32)> = found.iter().map(|found| (found.hit.triangle, found.blocked)).collect();
     assert_eq!(found, [(2, 1), (1, 1), (2, 1), (NO_TRIANGLE, 0)]);
-}
-
-#[test]
-fn rays_leave_a_surface_without_meeting_it_again() {
-    let session = Session::open();
-    for (seed, scale) in [(31, 1.0), (32, 1e-6), (33, 1e6)] {
-        let mut random = Random::new(seed);
-        for center in [Vec3::ZERO, Vec3::new(0.7, -0.1, 0.4)] {
-            let triangles = sphere(24, center * scale, 0.3 * scale);
-            // A far speck gives the scene its extent.
-            let speck = Vec3::ONE * scale;
-            let speck = [speck, speck * 1.001, speck * Vec3::new(1.0, 1.001, 1.0)].map(|corner| corner.to_array());
-            let triangles = [triangles, vec![BvhTriangle { corners: speck, flags: 0 }]].concat();
-            let bvh = Bvh::build(&triangles);
-            let one = |_| {
-                let target = (center + random.point() * 0.2) * scale;
-                let origin = (center + random.point().normalize()) * scale;
-                ray(origin, (target - origin).normalize(), 10.0 * scale)
-            };
-            let rays: Vec<Ray> = (0..20_000).map(one).collect();
-            let corners: Vec<[f32; 4]> =
-                triangles.iter().flat_map(|triangle| triangle.corners.map(|[x, y, z]| [x, y, z, 0.0])).collect();
-            let mut store = session.store();
-            let mut graph = Graph::new(&mut store);
-            let leavings = graph.buffer::<types::Leaving>("leavings", rays.len());
-            let pass = LeaveSurface {
-                bvh_nodes: graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE).texels(NODES),
-                bvh_triangles: graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE).texels(FLOATS),
-                rays: graph.upload("rays", &rays, Dependence::NONE).texels(FLOATS),
-                corners: graph.upload("corners", &corners, Dependence::NONE).texels(FLOATS),
-                leavings: leavings.write(),
-            };
-            graph.pass("test/leave-surface", pass).threads([rays.len() as u32, 1, 1]);
-            let read_back = graph.read_back_buffer(leavings);
-            let bytes = graph.run(Timing::Frame).expect("a frame").take(read_back);
-            let found: Vec<types::Leaving> = bytemuck::pod_collect_to_vec(&bytes);
-            let blocked = found.iter().filter(|leaving| leaving.blocked != 0).count();
-            let farthest = found.iter().map(|leaving| leaving.offset).fold(0.0, f32::max) / scale;
-            println!(
-                "scale {scale:e}, centre {center}: {blocked} blocked, moved by at most {farthest:.1e} of the scene"
-            );
-            assert!(found.iter().filter(|leaving| leaving.hit != 0).count() > 19_000);
-            assert_eq!(blocked, 0);
-            assert!(farthest < 3e-5);
-        }
-    }
 }

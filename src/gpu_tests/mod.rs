@@ -5,6 +5,8 @@
 //! that outlives its renderer.
 
 mod bvh;
+mod bvh_closed;
+mod bvh_speed;
 mod direct;
 mod flux;
 mod gather;
@@ -16,6 +18,7 @@ mod light_share;
 mod memory;
 mod probe;
 mod raster;
+mod rays;
 mod repeats;
 mod robustness;
 mod scenes;

@@ -87,7 +87,7 @@ impl Bvh {
         Bvh { triangles: texels.collect(), nodes: bytemuck::cast_slice(&tree.nodes).to_vec() }
     }
 
-    /// All triangles of a scene in the order of its instances and their indices, around `origin`, in metres.
+    /// All triangles of a scene, in the order of its instances and their indices, around `origin`, in metres.
     ///
     /// Corners keep the order of the indices, also where an instance mirrors its mesh. `flags` gives those of an instance.
     pub(crate) fn triangles_of(
@@ -207,4 +207,42 @@ fn balanced(boxes: &[Aabb], numbers: &[u32]) -> Bvh2 {
         waiting.extend([(child, range.start..middle), (child + 1, middle..range.end)]);
     }
     tree
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(at: f32, size: f32) -> BvhTriangle {
+        BvhTriangle { corners: [[at, 0.0, 0.0], [at + size, 0.0, size], [at, size, 0.0]], flags: 0 }
+    }
+
+    #[test]
+    fn equal_lists_give_equal_bits() {
+        let triangles: Vec<BvhTriangle> =
+            (0..2000_u16).map(|index| triangle(f32::from(index % 61 * 37), f32::from(index % 50))).collect();
+        let [a, b] = [Bvh::build(&triangles), Bvh::build(&triangles)];
+        let bits = |bvh: &Bvh| bytemuck::pod_collect_to_vec::<[f32; 4], u32>(&bvh.triangles);
+        assert!(a.nodes == b.nodes && bits(&a) == bits(&b));
+    }
+
+    #[test]
+    fn no_tree_is_deeper_than_the_stack() {
+        // Each triangle half as large and half as far as the one before, and many in one place.
+        let shrinking = (0..80).map(|power| triangle(2_f32.powi(40 - power), 2_f32.powi(39 - power)));
+        let triangles: Vec<BvhTriangle> = shrinking.chain([triangle(3.0, 1.0); 5000]).collect();
+        for deepest in [DEEPEST, 0] {
+            let sound: Vec<Triangle> = triangles
+                .iter()
+                .map(|triangle| {
+                    let [v0, v1, v2] = triangle.corners.map(Vec3A::from);
+                    Triangle { v0, v1, v2 }
+                })
+                .collect();
+            let tree = wide(&sound, deepest);
+            assert!(depth(&tree) <= DEEPEST);
+            let numbers: std::collections::HashSet<u32> = tree.primitive_indices.iter().copied().collect();
+            assert_eq!(numbers.len(), sound.len(), "every triangle is in a leaf");
+        }
+    }
 }
