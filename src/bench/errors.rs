@@ -1,7 +1,7 @@
 //! How far a contender's images are from references: slot by slot against the light paths that its methods account for, and
 //! against full light transport.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use super::report::{ImageErrors, Reference as Compared, Run};
@@ -33,12 +33,15 @@ pub enum ErrorsUnknown {
 
 /// The references of one scene, each made when it is first needed.
 pub struct References<'a> {
-    obtain: Box<dyn FnMut(Option<u32>) -> Result<Reference, String> + 'a>,
-    made: BTreeMap<Option<u32>, Rc<Reference>>,
+    obtain: Box<dyn FnMut(Kind) -> Result<Reference, String> + 'a>,
+    made: HashMap<Kind, Rc<Reference>>,
 }
 
+/// What the references of a scene differ in: the limit of bounces, and where in a pixel light is sampled.
+type Kind = (Option<u32>, PixelFilter);
+
 impl<'a> References<'a> {
-    /// The references of `subject` at `size`, of `spp` samples per pixel, light sampled at the pixels' centres as techniques do.
+    /// The references of `subject` at `size`, of `spp` samples per pixel, light sampled where in a pixel a contender does.
     pub fn new(
         context: &'a Context,
         subject: &'a Subject<'_>,
@@ -47,13 +50,13 @@ impl<'a> References<'a> {
         cache: Option<&'a Cache>,
         mut progress: impl FnMut(Progress) + 'a,
     ) -> References<'a> {
-        References::by(move |bounces| {
+        References::by(move |(bounces, filter)| {
             let request = ReferenceRequest {
                 size,
                 camera: subject.camera.clone(),
                 estimator: Estimator::Path,
                 bounces,
-                filter: PixelFilter::Center,
+                filter,
                 seed: 0,
             };
             let job = Job { context, scene: subject.scene, scene_name: subject.name, request: &request };
@@ -62,8 +65,8 @@ impl<'a> References<'a> {
         })
     }
 
-    fn by(obtain: impl FnMut(Option<u32>) -> Result<Reference, String> + 'a) -> References<'a> {
-        References { obtain: Box::new(obtain), made: BTreeMap::new() }
+    fn by(obtain: impl FnMut(Kind) -> Result<Reference, String> + 'a) -> References<'a> {
+        References { obtain: Box::new(obtain), made: HashMap::new() }
     }
 
     /// Fills in the errors of a run made with `settings`, whose slots were asked for.
@@ -72,8 +75,8 @@ impl<'a> References<'a> {
     /// No reference; images that are of another size or not finite. The run is then as it was.
     pub fn compare(&mut self, finished: &mut Finished, settings: &Settings) -> Result<(), ErrorsUnknown> {
         let Some(images) = &finished.images else { return Ok(()) };
-        let bounces = settings.bounces();
-        let (equal, full) = (self.get(bounces)?, self.get(None)?);
+        let (bounces, filter) = (settings.bounces(), settings.filter());
+        let (equal, full) = (self.get((bounces, filter))?, self.get((None, filter))?);
         let (error, noise) = errors(images, &equal)?;
         let (error_full, noise_full) = errors(images, &full)?;
         let compared = |spp, bounces| Compared { technique: estimator_name(Estimator::Path).to_owned(), spp, bounces };
@@ -90,19 +93,19 @@ impl<'a> References<'a> {
         Ok(())
     }
 
-    fn get(&mut self, bounces: Option<u32>) -> Result<Rc<Reference>, ErrorsUnknown> {
-        if let Some(reference) = self.made.get(&bounces) {
+    fn get(&mut self, kind: Kind) -> Result<Rc<Reference>, ErrorsUnknown> {
+        if let Some(reference) = self.made.get(&kind) {
             return Ok(reference.clone());
         }
-        let reference = Rc::new((self.obtain)(bounces).map_err(ErrorsUnknown::Reference)?);
-        self.made.insert(bounces, reference.clone());
+        let reference = Rc::new((self.obtain)(kind).map_err(ErrorsUnknown::Reference)?);
+        self.made.insert(kind, reference.clone());
         Ok(reference)
     }
 }
 
 impl std::fmt::Debug for References<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("References").field("bounces", &self.made.keys()).finish_non_exhaustive()
+        f.debug_struct("References").field("made", &self.made.keys()).finish_non_exhaustive()
     }
 }
 
@@ -176,7 +179,7 @@ mod tests {
     #[test]
     fn slots_are_compared_with_the_light_paths_that_methods_account_for() {
         let mut asked = Vec::new();
-        let mut references = References::by(|bounces| {
+        let mut references = References::by(|(bounces, _)| {
             asked.push(bounces);
             Ok(reference(bounces))
         });
@@ -221,7 +224,7 @@ mod tests {
         assert!(error.contains("no light"), "{error}");
         assert_eq!(finished.run, example_run());
 
-        let mut references = References::by(|bounces| Ok(reference(bounces)));
+        let mut references = References::by(|(bounces, _)| Ok(reference(bounces)));
         if let Some(images) = &mut finished.images {
             images.slots.insert(Slot::Direct, ColorImage { size: SIZE, pixels: vec![[f32::NAN; 3]; 48] });
         }

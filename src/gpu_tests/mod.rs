@@ -5,6 +5,9 @@
 //! that outlives its renderer.
 
 mod bench_slots;
+mod bvh;
+mod bvh_closed;
+mod bvh_speed;
 mod direct;
 mod flux;
 mod gather;
@@ -16,6 +19,8 @@ mod light_share;
 mod memory;
 mod probe;
 mod raster;
+mod rays;
+mod reference_files;
 mod repeats;
 mod robustness;
 mod scenes;

@@ -3,7 +3,6 @@
 //! A reference is made of samples of two independent halves, A and B, which differ in the scrambling of their sample sequences. The
 //! image is the mean over all samples; half the difference of the halves' means has the variance of that mean, which is the
 //! noise that reports state.
-
 //!
 //! ```text
 //! source ──▶ blocks ──▶ file ──▶ cache, shards
@@ -14,15 +13,23 @@
 mod about;
 mod blocks;
 mod cache;
+mod camera_paths;
+mod emitters;
 mod error;
 mod file;
 mod key;
+mod light_paths;
 mod noise;
 mod obtain;
+mod paths;
 mod result;
 mod shard;
+mod sobol;
 #[cfg(test)]
 mod tests;
+mod texels;
+mod traced_scene;
+pub(crate) mod tracer;
 
 use serde::{Deserialize, Serialize};
 
@@ -100,14 +107,22 @@ pub trait SampleSource {
     }
 }
 
+/// Sets the seeds of references apart from those of techniques: a technique that takes some of the very samples that it is
+/// compared with would look better than it is.
+const SEEDS_OF_REFERENCES: u32 = 0x2545_F491;
+
 /// Who adds up the samples of what `request` asks of `scene`.
 ///
 /// # Errors
-/// An estimator that there is not; exhausted device memory.
+/// An estimator that there is not; a scene that does not fit the device.
 fn source<'a>(
-    _context: &'a Context,
-    _scene: &'a Scene,
+    context: &'a Context,
+    scene: &'a Scene,
     request: &'a ReferenceRequest,
 ) -> Result<Box<dyn SampleSource + 'a>, Error> {
-    Err(Error::Estimator(estimator_name(request.estimator)))
+    let request = ReferenceRequest { seed: request.seed ^ SEEDS_OF_REFERENCES, ..request.clone() };
+    match request.estimator {
+        Estimator::Path => Ok(Box::new(tracer::PathSource::new(context, scene, &request)?)),
+        Estimator::Sppm => Err(Error::Estimator(estimator_name(Estimator::Sppm))),
+    }
 }
