@@ -110,7 +110,8 @@ impl Bench<'_> {
             }
         }
         let pictures = args.images.is_some();
-        let options = Options { size: args.scene_args.size, frames: args.frames, warmup: args.warmup, pictures };
+        let (size, frames, warmup) = (args.scene_args.size, args.frames, args.warmup);
+        let options = Options { size, frames, warmup, max_seconds: None, pictures };
         let context = invocation.context()?;
         if let Some(folder) = &args.images {
             fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
@@ -181,7 +182,7 @@ fn write_reports(args: &BenchArgs, report: &Report) -> Result<()> {
     write(&args.md, &|| Ok(tables::markdown(report)))
 }
 
-fn write_text(path: &Path, text: &str) -> Result<()> {
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
     Ok(AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?)
 }
 

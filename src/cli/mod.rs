@@ -12,6 +12,7 @@ mod method_args;
 mod render;
 mod scene_args;
 mod scenes;
+mod sweep;
 mod terminal;
 mod values;
 
@@ -70,6 +71,7 @@ enum ValidationChoice {
 enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
+    Sweep(sweep::SweepArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -89,6 +91,7 @@ pub(crate) fn main() -> ExitCode {
     let done = match &cli.command {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
+        Command::Sweep(args) => sweep::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),

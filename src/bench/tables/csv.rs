@@ -51,8 +51,9 @@ fn cells(run: &Run, row: &Row) -> [String; 13] {
     ]
 }
 
-fn line<const COUNT: usize>(cells: [String; COUNT]) -> String {
-    cells.map(quoted).join(",") + "\r\n"
+/// A row of CSV with its line end.
+pub(crate) fn line(cells: impl IntoIterator<Item = String>) -> String {
+    cells.into_iter().map(quoted).collect::<Vec<_>>().join(",") + "\r\n"
 }
 
 /// Quoted if it holds a comma, a quote or a line end.

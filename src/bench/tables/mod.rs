@@ -5,7 +5,9 @@ mod markdown;
 mod text;
 
 pub use csv::csv;
+pub(crate) use csv::line as csv_line;
 pub use markdown::markdown;
+pub(crate) use text::table;
 pub use text::{TEXT_WIDTH, scene_text, summary_text};
 
 use super::report::Run;

@@ -1,0 +1,352 @@
+//! A plot of time against error, as SVG: a line for every series, the Pareto front ringed.
+
+use plotters::coord::Shift;
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::element::{Circle, PathElement, Polygon, Rectangle, Text};
+use plotters::prelude::{Color, DrawingArea, IntoDrawingArea, RGBColor, SVGBackend};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontFamily, FontStyle, FontTransform, ShapeStyle, TextStyle};
+
+use super::chart::{Area, LogAxis, Places, number_label, time_label};
+use super::lines::{Line, lines};
+use super::points::written;
+use super::result::Sweep;
+
+const SIZE: (u32, u32) = (800, 560);
+const LEFT: i32 = 86;
+const RIGHT: i32 = 776;
+const BOTTOM: i32 = 496;
+/// The first line of the legend, the height of each, and from its last line to the plot.
+const LEGEND_TOP: i32 = 88;
+const LEGEND_ROW: i32 = 22;
+const LEGEND_GAP: i32 = 18;
+
+const INK: RGBColor = RGBColor(34, 34, 34);
+const FAINT_INK: RGBColor = RGBColor(102, 102, 102);
+const GRID: RGBColor = RGBColor(214, 214, 214);
+const FAINT_GRID: RGBColor = RGBColor(238, 238, 238);
+const PAPER: RGBColor = RGBColor(255, 255, 255);
+/// Okabe and Ito's colours, told apart with any kind of colour vision, without the yellow that is lost on white paper.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(60, 60, 60),
+];
+
+type Point = (i32, i32);
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// The plot of a scene; the same result gives the same bytes. `noise` is the error that the reference itself has by its
+/// noise, if that is known. `None` if no point has both a time and an error.
+pub fn plot(sweep: &Sweep, scene: &str, noise: Option<f64>) -> Option<String> {
+    let lines = lines(sweep, scene);
+    let pairs: Vec<(f64, f64)> = lines.iter().flat_map(|line| line.pairs()).filter(|pair| drawable(*pair)).collect();
+    let legend = Legend::of(&lines);
+    let top = LEGEND_TOP + LEGEND_ROW * (legend.rows - 1) + LEGEND_GAP;
+    let x = LogAxis::around(pairs.iter().map(|pair| pair.0), LEFT, RIGHT)?;
+    let y = LogAxis::around(pairs.iter().map(|pair| pair.1).chain(noise), BOTTOM, top)?;
+    let frame = Area { left: LEFT, top, right: RIGHT, bottom: BOTTOM };
+    let mut text = String::new();
+    let canvas = Canvas(SVGBackend::with_string(&mut text, SIZE).into_drawing_area());
+    let drawn = canvas
+        .head(sweep, scene)
+        .and_then(|()| canvas.axes(sweep, &frame, &x, &y))
+        .and_then(|()| canvas.noise(&frame, &y, noise))
+        .and_then(|()| canvas.lines(&lines, &frame, &x, &y))
+        .and_then(|()| canvas.legend(&legend))
+        .and_then(|()| canvas.0.present());
+    drawn.expect("a string takes whatever is written to it");
+    drop(canvas);
+    Some(text)
+}
+
+/// Whether a pair has a place on logarithmic axes.
+fn drawable((time, error): (f64, f64)) -> bool {
+    time > 0.0 && error > 0.0 && time.is_finite() && error.is_finite()
+}
+
+/// The entries of the legend and where they begin.
+struct Legend {
+    entries: Vec<(Point, Option<usize>, String)>,
+    rows: i32,
+}
+
+impl Legend {
+    /// An entry for each series that is drawn, and one for the rings; as many rows as that takes.
+    fn of(lines: &[Line<'_>]) -> Legend {
+        let mut names: Vec<(Option<usize>, String)> = Vec::new();
+        for line in lines.iter().filter(|line| line.pairs().into_iter().any(drawable)) {
+            let name = line.key.map_or_else(|| line.name.to_owned(), |key| format!("{} ({key})", line.name));
+            if names.last().is_none_or(|(series, _)| *series != Some(line.series)) {
+                names.push((Some(line.series), name));
+            }
+        }
+        names.push((None, "Pareto front".to_owned()));
+        let (mut at, mut entries) = ((LEFT + 2, LEGEND_TOP), Vec::new());
+        for (series, name) in names {
+            let width = 44 + (7.0 * name.chars().count() as f64) as i32;
+            if at.0 + width > RIGHT && at.0 > LEFT + 2 {
+                at = (LEFT + 2, at.1 + LEGEND_ROW);
+            }
+            entries.push((at, series, name));
+            at.0 += width + 12;
+        }
+        Legend { entries, rows: (at.1 - LEGEND_TOP) / LEGEND_ROW + 1 }
+    }
+}
+
+struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
+
+impl Canvas<'_> {
+    /// The paper, the title, what is shown, and what measured it.
+    fn head(&self, sweep: &Sweep, scene: &str) -> Drawn {
+        self.0.fill(&PAPER)?;
+        let [width, height] = sweep.grid.size;
+        let of = sweep.grid.reference.map(|spp| format!(" ({spp} samples per pixel)")).unwrap_or_default();
+        self.text((LEFT, 24), &format!("{scene}, {width} × {height} pixels"), &title(), HPos::Left)?;
+        self.text((LEFT, 45), &format!("Time against {}{of}", sweep.grid.error_words()), &body(INK), HPos::Left)?;
+        self.text((LEFT, 63), &sweep.measured_by(), &small(FAINT_INK), HPos::Left)
+    }
+
+    fn axes(&self, sweep: &Sweep, frame: &Area, x: &LogAxis, y: &LogAxis) -> Drawn {
+        let colour = |decade: bool| if decade { GRID } else { FAINT_GRID };
+        // Decades last, so that no fainter line crosses them.
+        for decade in [false, true] {
+            for tick in x.ticks().iter().filter(|tick| tick.decade == decade) {
+                self.path(&[(tick.at, frame.top), (tick.at, frame.bottom)], colour(decade), 1)?;
+            }
+            for tick in y.ticks().iter().filter(|tick| tick.decade == decade) {
+                self.path(&[(frame.left, tick.at), (frame.right, tick.at)], colour(decade), 1)?;
+            }
+        }
+        for tick in x.ticks() {
+            let length = if tick.label.is_some() { 6 } else { 3 };
+            self.path(&[(tick.at, frame.bottom), (tick.at, frame.bottom + length)], INK, 1)?;
+            if let Some(value) = tick.label {
+                self.text((tick.at, frame.bottom + 17), &time_label(value), &body(INK), HPos::Center)?;
+            }
+        }
+        for tick in y.ticks() {
+            let length = if tick.label.is_some() { 6 } else { 3 };
+            self.path(&[(frame.left - length, tick.at), (frame.left, tick.at)], INK, 1)?;
+            if let Some(value) = tick.label {
+                self.text((frame.left - 10, tick.at), &number_label(value), &body(INK), HPos::Right)?;
+            }
+        }
+        self.path(&[(frame.left, frame.top), (frame.left, frame.bottom), (frame.right, frame.bottom)], INK, 1)?;
+        let middle = (frame.left + frame.right) / 2;
+        self.text((middle, frame.bottom + 44), "GPU time of a frame (median)", &body(INK), HPos::Center)?;
+        let upright = body(INK).transform(FontTransform::Rotate270);
+        let middle = (frame.top + frame.bottom) / 2;
+        self.text((22, middle), sweep.grid.metric_words(), &upright, HPos::Center)
+    }
+
+    /// What no error can honestly be below.
+    fn noise(&self, frame: &Area, y: &LogAxis, noise: Option<f64>) -> Drawn {
+        let Some(noise) = noise.filter(|noise| drawable((1.0, *noise))) else { return Ok(()) };
+        let at = y.place(noise);
+        self.dashed(&[(frame.left, at), (frame.right, at)], FAINT_INK)?;
+        self.text((frame.right - 4, at - 9), "noise of the reference", &small(FAINT_INK), HPos::Right)
+    }
+
+    /// The front below, then the lines, their markers, and what varies beside them.
+    fn lines(&self, lines: &[Line<'_>], frame: &Area, x: &LogAxis, y: &LogAxis) -> Drawn {
+        let place = |pair: (f64, f64)| (x.place(pair.0), y.place(pair.1));
+        let (mut markers, mut segments, mut labels, mut front) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for line in lines {
+            let mut path: Vec<Point> = Vec::new();
+            for mark in &line.marks {
+                let Some(pair) = mark.error.map(|error| (mark.time_ms, error)).filter(|pair| drawable(*pair)) else {
+                    continue;
+                };
+                let at = place(pair);
+                segments.extend(path.last().map(|last| [*last, at]));
+                path.push(at);
+                markers.push((at, line.series, mark.pareto));
+                labels.push((at, line.series, mark.value.map(written).unwrap_or_default()));
+                if mark.pareto {
+                    front.push(at);
+                }
+            }
+            if let Some((_, _, label)) = labels.last_mut().filter(|_| !line.fixed.is_empty() && !path.is_empty()) {
+                *label = format!("{label} ({})", line.fixed_words());
+            }
+            self.path(&path, colour(line.series), 2)?;
+        }
+        front.sort();
+        self.dashed(&front, FAINT_INK)?;
+        for (at, series, pareto) in &markers {
+            self.marker(*at, *series, *pareto)?;
+        }
+        let areas = markers.iter().map(|(at, _, pareto)| Area::around(*at, if *pareto { 9 } else { 5 }));
+        let mut places = Places::new(*frame, areas.collect(), segments);
+        for (at, series, label) in labels.iter().filter(|(_, _, label)| !label.is_empty()) {
+            self.text(places.find(*at, label), label, &small(darker(colour(*series))), HPos::Center)?;
+        }
+        Ok(())
+    }
+
+    fn legend(&self, legend: &Legend) -> Drawn {
+        for ((x, y), series, name) in &legend.entries {
+            match series {
+                Some(series) => {
+                    self.path(&[(*x, *y), (x + 32, *y)], colour(*series), 2)?;
+                    self.marker((x + 16, *y), *series, false)?;
+                }
+                None => {
+                    self.dashed(&[(*x, *y), (x + 32, *y)], FAINT_INK)?;
+                    self.ring((x + 16, *y))?;
+                }
+            }
+            self.text((x + 40, *y), name, &body(INK), HPos::Left)?;
+        }
+        Ok(())
+    }
+
+    /// Series differ in shape as well as colour.
+    fn marker(&self, at: Point, series: usize, ringed: bool) -> Drawn {
+        if ringed {
+            self.ring(at)?;
+        }
+        let style = colour(series).filled();
+        let polygon = |corners: &[Point]| {
+            let corners: Vec<Point> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();
+            self.0.draw(&Polygon::new(corners, style))
+        };
+        match series % 5 {
+            0 => self.0.draw(&Circle::new(at, 5, style)),
+            1 => self.0.draw(&Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 5, at.1 + 5)], style)),
+            2 => polygon(&[(0, -6), (6, 5), (-6, 5)]),
+            3 => polygon(&[(0, -6), (6, 0), (0, 6), (-6, 0)]),
+            _ => polygon(&[(0, 6), (6, -5), (-6, -5)]),
+        }
+    }
+
+    fn ring(&self, at: Point) -> Drawn {
+        self.0.draw(&Circle::new(at, 9, PAPER.filled()))?;
+        self.0.draw(&Circle::new(at, 9, ShapeStyle::from(INK).stroke_width(1)))
+    }
+
+    fn path(&self, points: &[Point], colour: RGBColor, width: u32) -> Drawn {
+        if points.len() < 2 {
+            return Ok(());
+        }
+        self.0.draw(&PathElement::new(points.to_vec(), ShapeStyle::from(colour).stroke_width(width)))
+    }
+
+    fn dashed(&self, points: &[Point], colour: RGBColor) -> Drawn {
+        for pair in points.windows(2) {
+            let (dx, dy) = (f64::from(pair[1].0 - pair[0].0), f64::from(pair[1].1 - pair[0].1));
+            let length = dx.hypot(dy);
+            let at = |along: f64| {
+                let share = (along / length).min(1.0);
+                (pair[0].0 + (share * dx).round() as i32, pair[0].1 + (share * dy).round() as i32)
+            };
+            for dash in 0..(length / 8.0).ceil() as u32 {
+                let start = 8.0 * f64::from(dash);
+                self.path(&[at(start), at(start + 4.0)], colour, 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn text(&self, at: Point, text: &str, style: &TextStyle<'_>, horizontal: HPos) -> Drawn {
+        self.0.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(horizontal, VPos::Center))))
+    }
+}
+
+fn colour(series: usize) -> RGBColor {
+    COLOURS[series % COLOURS.len()]
+}
+
+/// Thin strokes of the paler colours would be hard to read.
+fn darker(RGBColor(red, green, blue): RGBColor) -> RGBColor {
+    let darker = |channel: u8| (f64::from(channel) * 0.75) as u8;
+    RGBColor(darker(red), darker(green), darker(blue))
+}
+
+fn title() -> TextStyle<'static> {
+    font(18.0, FontStyle::Bold, INK)
+}
+
+fn body(colour: RGBColor) -> TextStyle<'static> {
+    font(13.0, FontStyle::Normal, colour)
+}
+
+fn small(colour: RGBColor) -> TextStyle<'static> {
+    font(12.0, FontStyle::Normal, colour)
+}
+
+/// Of so many pixels; the backend divides by 1.24.
+fn font(pixels: f64, style: FontStyle, colour: RGBColor) -> TextStyle<'static> {
+    let style = TextStyle::from((FontFamily::SansSerif, 1.24 * pixels, style));
+    TextStyle { color: colour.to_backend_color(), ..style }
+}
+
+#[cfg(test)]
+mod tests {
+    use roxmltree::Document;
+
+    use super::*;
+    use crate::bench::sweep::execute::tests::whole;
+
+    fn strokes<'a>(document: &'a Document<'_>, series: usize) -> Vec<&'a str> {
+        let RGBColor(red, green, blue) = colour(series);
+        let stroke = format!("#{red:02X}{green:02X}{blue:02X}");
+        let lines = document.descendants().filter(|node| node.has_tag_name("polyline"));
+        let own = lines.filter(|node| node.attribute("stroke") == Some(stroke.as_str()));
+        own.map(|node| node.attribute("points").expect("a line has points")).collect()
+    }
+
+    fn texts(document: &Document<'_>) -> Vec<String> {
+        let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+        texts.filter_map(|node| node.text()).map(|text| text.trim().to_owned()).collect()
+    }
+
+    #[test]
+    fn a_plot_has_a_line_for_every_series_and_labels_its_points() {
+        let mut sweep = whole();
+        sweep.device.name = "A <device> & \"more\"".to_owned();
+        let text = plot(&sweep, "ring", Some(0.03)).expect("points with errors");
+        let document = Document::parse(&text).expect("well-formed");
+        // The line itself and its piece in the legend.
+        for (series, count) in [(0, 5), (1, 2)] {
+            let strokes = strokes(&document, series);
+            assert_eq!(strokes.len(), 2, "{strokes:?}");
+            assert_eq!(strokes[0].split_whitespace().count(), count);
+        }
+        let texts = texts(&document);
+        let title = "ring, 256 × 256 pixels";
+        for words in [title, "gathered (rsm.vpls)", "Pareto front", "noise of the reference", "4096", "100 ms"] {
+            assert!(texts.iter().any(|text| text == words), "{words} is not in {texts:?}");
+        }
+        assert!(texts.iter().any(|text| text.contains("A <device> & \"more\"")), "{texts:?}");
+        assert!(texts.iter().any(|text| text.contains("full light transport (64 samples per pixel)")), "{texts:?}");
+        assert!(!plot(&sweep, "ring", None).expect("points").contains("noise of the reference"));
+    }
+
+    #[test]
+    fn the_same_result_is_the_same_plot() {
+        let text = serde_json::to_string(&whole()).expect("plain data");
+        let again: Sweep = serde_json::from_str(&text).expect("its own");
+        assert_eq!(plot(&again, "ring", None), plot(&whole(), "ring", None));
+    }
+
+    #[test]
+    fn points_without_a_place_are_left_out() {
+        let mut sweep = whole();
+        for (measured, rrmse) in sweep.points.iter_mut().zip([f64::NAN, 0.0, -1.0, f64::INFINITY]) {
+            measured.run.error_full.as_mut().expect("compared").get_mut("image").expect("there").rrmse = rrmse;
+        }
+        sweep.points[5].run.error_full = None;
+        let text = plot(&sweep, "ring", None).expect("two points are left");
+        let document = Document::parse(&text).expect("well-formed");
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        assert_eq!(strokes(&document, 0).len(), 1, "a single point is no line");
+        assert_eq!(plot(&sweep, "maze", None), None);
+    }
+}
