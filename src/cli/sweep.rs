@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use irradia::bench::report::{Device, Run};
 use irradia::bench::sweep::{self, Grid, GridScene, Group, Point, Shard, Sweep};
@@ -98,6 +98,10 @@ pub(crate) fn run(args: &SweepArgs, invocation: &Invocation<'_>) -> Result<()> {
 /// Measures what is not yet measured of the grid, or of a part of it.
 fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> Result<Sweep> {
     let mut grid = Grid::load(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for scene in &grid.scenes {
+        scene.find(folder).map_err(|error| anyhow!("{}: {error}", path.display()))?;
+    }
     grid.size = args.size.unwrap_or(grid.size);
     grid.reference = args.reference.or(grid.reference);
     grid.frames = args.frames.unwrap_or(grid.frames);
@@ -117,7 +121,6 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
 
     let pending = points.iter().filter(|point| !result.holds(point)).count();
     let progress = invocation.terminal.progress(pending as u64);
-    let folder = path.parent().unwrap_or(Path::new(""));
     let mut bench = Bench { context: &context, grid: &grid, folder, opened: None, progress: &progress };
     let mut done = 0;
     let mut measure = |group: &Group<'_>| {

@@ -119,8 +119,11 @@ impl Area {
 pub(super) struct Places {
     frame: Area,
     taken: Vec<Area>,
-    segments: Vec<[(i32, i32); 2]>,
+    segments: Vec<Segment>,
 }
+
+/// A piece of a line, pixels.
+pub(super) type Segment = [(i32, i32); 2];
 
 /// Height of a label and the mean width of its characters, pixels; fonts differ, so both are generous.
 const LABEL_HEIGHT: i32 = 14;
@@ -128,7 +131,7 @@ const LABEL_CHARACTER: f64 = 7.2;
 
 impl Places {
     /// Places within `frame` that keep clear of markers and lines.
-    pub(super) fn new(frame: Area, markers: Vec<Area>, segments: Vec<[(i32, i32); 2]>) -> Places {
+    pub(super) fn new(frame: Area, markers: Vec<Area>, segments: Vec<Segment>) -> Places {
         Places { frame, taken: markers, segments }
     }
 
@@ -171,7 +174,7 @@ impl Places {
 }
 
 /// Whether a segment enters an area, looked at pixel by pixel.
-fn crosses(segment: &[(i32, i32); 2], area: &Area) -> bool {
+fn crosses(segment: &Segment, area: &Area) -> bool {
     let [(x0, y0), (x1, y1)] = *segment;
     let steps = (x1 - x0).abs().max((y1 - y0).abs()).max(1);
     (0..=steps).any(|step| area.holds((x0 + (x1 - x0) * step / steps, y0 + (y1 - y0) * step / steps)))

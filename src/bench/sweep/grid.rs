@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::grid_file;
 use crate::bench::report::{ImageErrors, Run};
 use crate::renderer::{Preset, Slot, Technique};
-use crate::scene::{LightSpec, Scene, SceneError};
+use crate::scene::{LightSpec, Scene, SceneError, builtin_names};
 
 /// A grid: every series on every scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -202,16 +202,43 @@ impl Grid {
 }
 
 impl GridScene {
+    /// Whether there is such a scene, found out before the work on others; `folder` is where the grid's file lies.
+    ///
+    /// # Errors
+    /// A sentence: there is no such file or no built-in scene of this name.
+    pub fn find(&self, folder: &Path) -> Result<(), String> {
+        let spec = self.spec(folder);
+        if self.is_file() && !Path::new(&spec).is_file() {
+            return Err(format!("scene {:?}: there is no file {spec}", self.name));
+        }
+        if !self.is_file() && !builtin_names().contains(&spec.as_str()) {
+            let known = builtin_names().join(", ");
+            let advice = "a file ends in .gltf or .glb";
+            return Err(format!(
+                "scene {:?}: there is no built-in scene {spec:?}, and {advice}; scenes: {known}",
+                self.name
+            ));
+        }
+        Ok(())
+    }
+
+    fn is_file(&self) -> bool {
+        let lower = self.path.to_ascii_lowercase();
+        lower.ends_with(".glb") || lower.ends_with(".gltf")
+    }
+
+    /// What a command line would call it.
+    fn spec(&self, folder: &Path) -> String {
+        if self.is_file() { folder.join(&self.path).to_string_lossy().into_owned() } else { self.path.clone() }
+    }
+
     /// Opens the scene and adds its lights. A file's path is seen from `folder`, where the grid's file lies.
     ///
     /// # Errors
     /// Those of [`Scene::open`] and of the lights, as a sentence.
     pub fn open(&self, folder: &Path) -> Result<Scene, String> {
-        let lower = self.path.to_ascii_lowercase();
-        let is_file = lower.ends_with(".glb") || lower.ends_with(".gltf");
-        let spec = if is_file { folder.join(&self.path).to_string_lossy().into_owned() } else { self.path.clone() };
         let said = |error: SceneError| error.to_string();
-        let mut scene = Scene::open(&spec).map_err(said)?;
+        let mut scene = Scene::open(&self.spec(folder)).map_err(said)?;
         for light in &self.light {
             scene.add_light_spec(&LightSpec::parse(light)?).map_err(said)?;
         }

@@ -13,7 +13,7 @@ use super::points::written;
 use super::result::Sweep;
 
 const SIZE: (u32, u32) = (800, 560);
-const LEFT: i32 = 86;
+const LEFT: i32 = 78;
 const RIGHT: i32 = 776;
 const BOTTOM: i32 = 496;
 /// The first line of the legend, the height of each, and from its last line to the plot.
@@ -88,7 +88,7 @@ impl Legend {
         names.push((None, "Pareto front".to_owned()));
         let (mut at, mut entries) = ((LEFT + 2, LEGEND_TOP), Vec::new());
         for (series, name) in names {
-            let width = 44 + (7.0 * name.chars().count() as f64) as i32;
+            let width = 44 + (6.6 * name.chars().count() as f64) as i32;
             if at.0 + width > RIGHT && at.0 > LEFT + 2 {
                 at = (LEFT + 2, at.1 + LEGEND_ROW);
             }
@@ -106,10 +106,10 @@ impl Canvas<'_> {
     fn head(&self, sweep: &Sweep, scene: &str) -> Drawn {
         self.0.fill(&PAPER)?;
         let [width, height] = sweep.grid.size;
-        let of = sweep.grid.reference.map(|spp| format!(" ({spp} samples per pixel)")).unwrap_or_default();
+        let spp = sweep.grid.reference.map(|spp| format!(", reference of {spp} samples per pixel")).unwrap_or_default();
         self.text((LEFT, 24), &format!("{scene}, {width} × {height} pixels"), &title(), HPos::Left)?;
-        self.text((LEFT, 45), &format!("Time against {}{of}", sweep.grid.error_words()), &body(INK), HPos::Left)?;
-        self.text((LEFT, 63), &sweep.measured_by(), &small(FAINT_INK), HPos::Left)
+        self.text((LEFT, 45), &format!("Error: {}{spp}", sweep.grid.error_words()), &body(INK), HPos::Left)?;
+        self.text((LEFT, 63), &shortened(&sweep.measured_by()), &small(FAINT_INK), HPos::Left)
     }
 
     fn axes(&self, sweep: &Sweep, frame: &Area, x: &LogAxis, y: &LogAxis) -> Drawn {
@@ -142,7 +142,7 @@ impl Canvas<'_> {
         self.text((middle, frame.bottom + 44), "GPU time of a frame (median)", &body(INK), HPos::Center)?;
         let upright = body(INK).transform(FontTransform::Rotate270);
         let middle = (frame.top + frame.bottom) / 2;
-        self.text((22, middle), sweep.grid.metric_words(), &upright, HPos::Center)
+        self.text((20, middle), sweep.grid.metric_words(), &upright, HPos::Center)
     }
 
     /// What no error can honestly be below.
@@ -178,9 +178,15 @@ impl Canvas<'_> {
             self.path(&path, colour(line.series), 2)?;
         }
         front.sort();
+        let front = stairs(&front);
+        segments.extend(front.windows(2).map(|pair| [pair[0], pair[1]]));
         self.dashed(&front, FAINT_INK)?;
-        for (at, series, pareto) in &markers {
-            self.marker(*at, *series, *pareto)?;
+        // All rings before all markers: none hides a neighbour.
+        for (at, _, _) in markers.iter().filter(|(_, _, pareto)| *pareto) {
+            self.ring(*at)?;
+        }
+        for (at, series, _) in &markers {
+            self.marker(*at, *series)?;
         }
         let areas = markers.iter().map(|(at, _, pareto)| Area::around(*at, if *pareto { 9 } else { 5 }));
         let mut places = Places::new(*frame, areas.collect(), segments);
@@ -195,7 +201,7 @@ impl Canvas<'_> {
             match series {
                 Some(series) => {
                     self.path(&[(*x, *y), (x + 32, *y)], colour(*series), 2)?;
-                    self.marker((x + 16, *y), *series, false)?;
+                    self.marker((x + 16, *y), *series)?;
                 }
                 None => {
                     self.dashed(&[(*x, *y), (x + 32, *y)], FAINT_INK)?;
@@ -208,10 +214,7 @@ impl Canvas<'_> {
     }
 
     /// Series differ in shape as well as colour.
-    fn marker(&self, at: Point, series: usize, ringed: bool) -> Drawn {
-        if ringed {
-            self.ring(at)?;
-        }
+    fn marker(&self, at: Point, series: usize) -> Drawn {
         let style = colour(series).filled();
         let polygon = |corners: &[Point]| {
             let corners: Vec<Point> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();
@@ -257,6 +260,19 @@ impl Canvas<'_> {
     fn text(&self, at: Point, text: &str, style: &TextStyle<'_>, horizontal: HPos) -> Drawn {
         self.0.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(horizontal, VPos::Center))))
     }
+}
+
+/// What the points of a front leave to none: up to the next point's time, the error of this one is the least there is.
+fn stairs(front: &[Point]) -> Vec<Point> {
+    let steps = front.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1)]);
+    steps.chain(front.last().copied()).collect()
+}
+
+/// No longer than the plot is wide.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 112;
+    let shorter = || text.chars().take(MOST - 1).chain(['…']).collect();
+    if text.chars().count() > MOST { shorter() } else { text.to_owned() }
 }
 
 fn colour(series: usize) -> RGBColor {
@@ -325,7 +341,7 @@ mod tests {
             assert!(texts.iter().any(|text| text == words), "{words} is not in {texts:?}");
         }
         assert!(texts.iter().any(|text| text.contains("A <device> & \"more\"")), "{texts:?}");
-        assert!(texts.iter().any(|text| text.contains("full light transport (64 samples per pixel)")), "{texts:?}");
+        assert!(texts.iter().any(|text| text.contains("full light transport, reference of 64 samples")), "{texts:?}");
         assert!(!plot(&sweep, "ring", None).expect("points").contains("noise of the reference"));
     }
 

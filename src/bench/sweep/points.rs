@@ -29,12 +29,12 @@ pub struct Point {
 #[derive(Debug, thiserror::Error)]
 pub enum PointsError {
     /// A setting does not exist or does not take a value.
-    #[error("series {series:?}: {source}")]
+    #[error("series {series:?}: {what}")]
     Setting {
         /// The series.
         series: String,
         /// What is wrong.
-        source: SettingsError,
+        what: SettingsError,
     },
     /// Two combinations of a series are the same.
     #[error("series {series:?} names the point {values} twice; leave one out")]
@@ -97,7 +97,7 @@ impl Grid {
 impl Series {
     /// The values and settings of every combination.
     fn combinations(&self) -> Result<Vec<(BTreeMap<String, Value>, Settings)>, PointsError> {
-        let failed = |source| PointsError::Setting { series: self.name.clone(), source };
+        let failed = |what| PointsError::Setting { series: self.name.clone(), what };
         let mut combinations = Vec::new();
         for preset in &self.preset {
             let mut settings = Settings::new(self.technique, *preset);

@@ -115,12 +115,12 @@ pub enum SweepError {
         other: PathBuf,
     },
     /// The grid in a file cannot be told in points.
-    #[error("the grid in {path} is not one of this version of irradia: {source}", path = .path.display())]
+    #[error("the grid in {path} is not one of this version of irradia: {what}", path = .path.display())]
     Grid {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: PointsError,
+        what: PointsError,
     },
 }
 
@@ -213,7 +213,7 @@ impl Sweep {
 
     /// The points of the grid.
     fn planned(&self, path: &Path) -> Result<Vec<Point>, SweepError> {
-        self.grid.points().map_err(|source| SweepError::Grid { path: path.to_owned(), source })
+        self.grid.points().map_err(|what| SweepError::Grid { path: path.to_owned(), what })
     }
 
     /// Adds a point in place of an earlier measurement of the same one.
