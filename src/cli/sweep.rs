@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
-use irradia::bench::report::{Device, Run};
-use irradia::bench::sweep::{self, Grid, GridScene, Group, Point, Shard, Sweep};
+use irradia::bench::report::Device;
+use irradia::bench::sweep::{self, Grid, GridScene, Group, Outcomes, Point, Shard, Sweep};
 use irradia::bench::{Options, Subject, run as measure};
 use irradia::output;
 use irradia::renderer::{Context, Settings};
@@ -175,7 +175,7 @@ struct Opened {
 }
 
 impl Bench<'_> {
-    fn measure(&mut self, group: &Group<'_>) -> Result<Vec<Result<Run, String>>, String> {
+    fn measure(&mut self, group: &Group<'_>) -> Outcomes {
         self.progress.about(&group.scene.name);
         let opened = match self.opened.take() {
             Some(opened) if opened.name == group.scene.name => opened,

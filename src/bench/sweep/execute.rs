@@ -14,6 +14,9 @@ pub struct Group<'a> {
     pub points: Vec<&'a Point>,
 }
 
+/// What becomes of a group: a run for each of its points or a sentence on why there is none, or one sentence for all.
+pub type Outcomes = Result<Vec<Result<Run, String>>, String>;
+
 /// Puts points, in the order of the grid, into groups as the grid's `interleave` says.
 pub fn groups<'a>(grid: &'a Grid, points: &[&'a Point]) -> Vec<Group<'a>> {
     let together = |a: &&Point, b: &&Point| match grid.interleave {
@@ -27,15 +30,15 @@ pub fn groups<'a>(grid: &'a Grid, points: &[&'a Point]) -> Vec<Group<'a>> {
         .collect()
 }
 
-/// Measures those of `points` that `sweep` does not hold yet. `measure` gives a run for each point of a group, or a
-/// sentence on why there is none, for one or for all; `save` is called after every group, with the result so far.
+/// Measures those of `points` that `sweep` does not hold yet, group by group; `save` is called after each, with the result
+/// so far.
 ///
 /// # Errors
 /// Those of `save`, which end the sweep. Points that fail do not.
 pub fn run<E>(
     sweep: &mut Sweep,
     points: &[Point],
-    measure: &mut dyn FnMut(&Group<'_>) -> Result<Vec<Result<Run, String>>, String>,
+    measure: &mut dyn FnMut(&Group<'_>) -> Outcomes,
     save: &mut dyn FnMut(&Sweep) -> Result<(), E>,
 ) -> Result<(), E> {
     let grid = sweep.grid.clone();

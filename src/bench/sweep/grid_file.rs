@@ -89,7 +89,7 @@ pub(super) fn parse(text: &str) -> Result<Grid, String> {
     if file.size.contains(&0) || file.frames == 0 || file.reference == Some(0) {
         return Err("size, frames and reference are at least 1".to_owned());
     }
-    if file.max_seconds.is_some_and(|seconds| !(seconds > 0.0)) {
+    if file.max_seconds.is_some_and(|seconds| seconds.is_nan() || seconds <= 0.0) {
         return Err("max_seconds is more than 0".to_owned());
     }
     if !Grid::entries().contains(&file.entry.as_str()) {

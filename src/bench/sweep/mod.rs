@@ -6,6 +6,7 @@
 //!                   ids, shards)   one by one)     merged)
 //! ```
 
+mod canvas;
 mod chart;
 mod csv;
 mod execute;
@@ -20,7 +21,7 @@ mod result;
 mod text;
 
 pub use csv::csv;
-pub use execute::{Group, groups, run};
+pub use execute::{Group, Outcomes, groups, run};
 pub use fit::{EqualTime, equal_time, slope};
 pub use grid::{Compare, Grid, GridError, GridScene, Interleave, Metric, Series};
 pub use lines::{Line, Mark, lines};

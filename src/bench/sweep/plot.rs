@@ -1,12 +1,9 @@
 //! A plot of time against error, as SVG: a line for every series, the Pareto front ringed.
 
-use plotters::coord::Shift;
-use plotters::drawing::DrawingAreaErrorKind;
-use plotters::element::{Circle, PathElement, Polygon, Rectangle, Text};
-use plotters::prelude::{Color, DrawingArea, IntoDrawingArea, RGBColor, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontFamily, FontStyle, FontTransform, ShapeStyle, TextStyle};
+use plotters::style::FontTransform;
+use plotters::style::text_anchor::HPos;
 
+use super::canvas::{Canvas, Drawn, FAINT_GRID, FAINT_INK, GRID, INK, Point, body, colour, darker, small, title};
 use super::chart::{Area, LogAxis, Places, number_label, time_label};
 use super::lines::{Line, lines};
 use super::points::written;
@@ -21,25 +18,6 @@ const LEGEND_TOP: i32 = 88;
 const LEGEND_ROW: i32 = 22;
 const LEGEND_GAP: i32 = 18;
 
-const INK: RGBColor = RGBColor(34, 34, 34);
-const FAINT_INK: RGBColor = RGBColor(102, 102, 102);
-const GRID: RGBColor = RGBColor(214, 214, 214);
-const FAINT_GRID: RGBColor = RGBColor(238, 238, 238);
-const PAPER: RGBColor = RGBColor(255, 255, 255);
-/// Okabe and Ito's colours, told apart with any kind of colour vision, without the yellow that is lost on white paper.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(60, 60, 60),
-];
-
-type Point = (i32, i32);
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
 /// The plot of a scene; the same result gives the same bytes. `noise` is the error that the reference itself has by its
 /// noise, if that is known. `None` if no point has both a time and an error.
 pub fn plot(sweep: &Sweep, scene: &str, noise: Option<f64>) -> Option<String> {
@@ -51,14 +29,15 @@ pub fn plot(sweep: &Sweep, scene: &str, noise: Option<f64>) -> Option<String> {
     let y = LogAxis::around(pairs.iter().map(|pair| pair.1).chain(noise), BOTTOM, top)?;
     let frame = Area { left: LEFT, top, right: RIGHT, bottom: BOTTOM };
     let mut text = String::new();
-    let canvas = Canvas(SVGBackend::with_string(&mut text, SIZE).into_drawing_area());
+    let canvas = Canvas::new(&mut text, SIZE);
     let drawn = canvas
-        .head(sweep, scene)
+        .blank()
+        .and_then(|()| canvas.head(sweep, scene))
         .and_then(|()| canvas.axes(sweep, &frame, &x, &y))
         .and_then(|()| canvas.noise(&frame, &y, noise))
         .and_then(|()| canvas.lines(&lines, &frame, &x, &y))
         .and_then(|()| canvas.legend(&legend))
-        .and_then(|()| canvas.0.present());
+        .and_then(|()| canvas.present());
     drawn.expect("a string takes whatever is written to it");
     drop(canvas);
     Some(text)
@@ -99,12 +78,9 @@ impl Legend {
     }
 }
 
-struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
-
 impl Canvas<'_> {
-    /// The paper, the title, what is shown, and what measured it.
+    /// The title, what is shown, and what measured it.
     fn head(&self, sweep: &Sweep, scene: &str) -> Drawn {
-        self.0.fill(&PAPER)?;
         let [width, height] = sweep.grid.size;
         let spp = sweep.grid.reference.map(|spp| format!(", reference of {spp} samples per pixel")).unwrap_or_default();
         self.text((LEFT, 24), &format!("{scene}, {width} × {height} pixels"), &title(), HPos::Left)?;
@@ -212,54 +188,6 @@ impl Canvas<'_> {
         }
         Ok(())
     }
-
-    /// Series differ in shape as well as colour.
-    fn marker(&self, at: Point, series: usize) -> Drawn {
-        let style = colour(series).filled();
-        let polygon = |corners: &[Point]| {
-            let corners: Vec<Point> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();
-            self.0.draw(&Polygon::new(corners, style))
-        };
-        match series % 5 {
-            0 => self.0.draw(&Circle::new(at, 5, style)),
-            1 => self.0.draw(&Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 5, at.1 + 5)], style)),
-            2 => polygon(&[(0, -6), (6, 5), (-6, 5)]),
-            3 => polygon(&[(0, -6), (6, 0), (0, 6), (-6, 0)]),
-            _ => polygon(&[(0, 6), (6, -5), (-6, -5)]),
-        }
-    }
-
-    fn ring(&self, at: Point) -> Drawn {
-        self.0.draw(&Circle::new(at, 9, PAPER.filled()))?;
-        self.0.draw(&Circle::new(at, 9, ShapeStyle::from(INK).stroke_width(1)))
-    }
-
-    fn path(&self, points: &[Point], colour: RGBColor, width: u32) -> Drawn {
-        if points.len() < 2 {
-            return Ok(());
-        }
-        self.0.draw(&PathElement::new(points.to_vec(), ShapeStyle::from(colour).stroke_width(width)))
-    }
-
-    fn dashed(&self, points: &[Point], colour: RGBColor) -> Drawn {
-        for pair in points.windows(2) {
-            let (dx, dy) = (f64::from(pair[1].0 - pair[0].0), f64::from(pair[1].1 - pair[0].1));
-            let length = dx.hypot(dy);
-            let at = |along: f64| {
-                let share = (along / length).min(1.0);
-                (pair[0].0 + (share * dx).round() as i32, pair[0].1 + (share * dy).round() as i32)
-            };
-            for dash in 0..(length / 8.0).ceil() as u32 {
-                let start = 8.0 * f64::from(dash);
-                self.path(&[at(start), at(start + 4.0)], colour, 1)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn text(&self, at: Point, text: &str, style: &TextStyle<'_>, horizontal: HPos) -> Drawn {
-        self.0.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(horizontal, VPos::Center))))
-    }
 }
 
 /// What the points of a front leave to none: up to the next point's time, the error of this one is the least there is.
@@ -275,36 +203,9 @@ fn shortened(text: &str) -> String {
     if text.chars().count() > MOST { shorter() } else { text.to_owned() }
 }
 
-fn colour(series: usize) -> RGBColor {
-    COLOURS[series % COLOURS.len()]
-}
-
-/// Thin strokes of the paler colours would be hard to read.
-fn darker(RGBColor(red, green, blue): RGBColor) -> RGBColor {
-    let darker = |channel: u8| (f64::from(channel) * 0.75) as u8;
-    RGBColor(darker(red), darker(green), darker(blue))
-}
-
-fn title() -> TextStyle<'static> {
-    font(18.0, FontStyle::Bold, INK)
-}
-
-fn body(colour: RGBColor) -> TextStyle<'static> {
-    font(13.0, FontStyle::Normal, colour)
-}
-
-fn small(colour: RGBColor) -> TextStyle<'static> {
-    font(12.0, FontStyle::Normal, colour)
-}
-
-/// Of so many pixels; the backend divides by 1.24.
-fn font(pixels: f64, style: FontStyle, colour: RGBColor) -> TextStyle<'static> {
-    let style = TextStyle::from((FontFamily::SansSerif, 1.24 * pixels, style));
-    TextStyle { color: colour.to_backend_color(), ..style }
-}
-
 #[cfg(test)]
 mod tests {
+    use plotters::style::RGBColor;
     use roxmltree::Document;
 
     use super::*;

@@ -94,9 +94,11 @@ impl Grid {
     }
 }
 
+/// What distinguishes a point within its series, and all its settings.
+type Combination = (BTreeMap<String, Value>, Settings);
+
 impl Series {
-    /// The values and settings of every combination.
-    fn combinations(&self) -> Result<Vec<(BTreeMap<String, Value>, Settings)>, PointsError> {
+    fn combinations(&self) -> Result<Vec<Combination>, PointsError> {
         let failed = |what| PointsError::Setting { series: self.name.clone(), what };
         let mut combinations = Vec::new();
         for preset in &self.preset {
