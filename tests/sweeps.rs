@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use irradia::bench::sweep::{Grid, Sweep};
-use irradia::renderer::Technique;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -56,17 +55,9 @@ fn point_count(toml: &str, path: &str) -> usize {
     grid.points().expect("checked when it was read").len()
 }
 
-/// Whether this build has all techniques of the grids; one that lacks some can say nothing about them.
-fn has_path_tracing() -> bool {
-    Technique::from_name("path").is_ok()
-}
-
 #[test]
 fn the_grids_that_are_checked_in_are_sound() {
     for (name, count) in [("quick", 6), ("rsm-path", 30)] {
-        if name == "rsm-path" && !has_path_tracing() {
-            continue;
-        }
         let path = format!("sweeps/{name}.toml");
         let toml = fs::read_to_string(root().join(&path)).expect("it is checked in");
         assert_eq!(point_count(&toml, &path), count, "{path}");
@@ -75,9 +66,6 @@ fn the_grids_that_are_checked_in_are_sound() {
 
 #[test]
 fn the_documented_grid_is_sound_and_its_defaults_are_right() {
-    if !has_path_tracing() {
-        return;
-    }
     let page = fs::read_to_string(root().join("docs/sweeps.md")).expect("it is checked in");
     let toml = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block of TOML");
     assert_eq!(point_count(toml, "docs/sweeps.md"), 20);

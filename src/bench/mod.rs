@@ -5,6 +5,7 @@
 //!         (one technique's frames) (JSON)  (what a table says)
 //! ```
 
+pub mod comparison;
 pub mod report;
 pub mod rows;
 mod run;

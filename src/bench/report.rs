@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::statistics::Spread;
+pub use crate::metrics::ImageErrors;
 use crate::renderer::{DeviceReport, Slot};
 
 /// The schema that [`Report`] writes.
@@ -171,33 +172,6 @@ pub struct Reference {
     pub bounces: Option<u32>,
 }
 
-/// How far an image is from another. JSON has no numbers that are not finite: they are null there, and read as not a number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ImageErrors {
-    /// Root of the mean squared difference of linear radiance.
-    #[serde(deserialize_with = "number_or_null")]
-    pub rmse: f64,
-    /// `rmse` over the mean of the reference.
-    #[serde(deserialize_with = "number_or_null")]
-    pub rrmse: f64,
-    /// Mean of the squared difference over the squared reference, with ε = 1 % of the mean of the reference.
-    #[serde(deserialize_with = "number_or_null")]
-    pub relmse: f64,
-    /// Peak signal-to-noise ratio of the tone-mapped images, dB.
-    #[serde(deserialize_with = "number_or_null")]
-    pub psnr: f64,
-    /// Structural similarity of the tone-mapped images.
-    #[serde(deserialize_with = "number_or_null")]
-    pub ssim: f64,
-    /// Mean FLIP.
-    #[serde(deserialize_with = "number_or_null")]
-    pub flip: f64,
-}
-
-fn number_or_null<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
-}
-
 /// What could not be run, and why.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
@@ -278,14 +252,6 @@ mod tests {
         });
         let text = serde_json::to_string_pretty(&report).expect("plain data");
         assert_eq!(serde_json::from_str::<Report>(&text).expect("its own"), report);
-    }
-
-    #[test]
-    fn errors_that_are_no_numbers_read_back() {
-        let errors = ImageErrors { rmse: 0.5, rrmse: f64::NAN, psnr: f64::INFINITY, ..ImageErrors::default() };
-        let text = serde_json::to_string(&errors).expect("plain data");
-        let read: ImageErrors = serde_json::from_str(&text).expect("its own");
-        assert!(read.rmse == 0.5 && read.rrmse.is_nan() && read.psnr.is_nan(), "{text}");
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 mod attributes;
 mod bench;
+mod compare;
 mod devices;
 mod files;
 mod graph;
@@ -72,6 +73,7 @@ enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
     Sweep(sweep::SweepArgs),
+    Compare(compare::CompareArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -92,6 +94,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
         Command::Sweep(args) => sweep::run(args, &invocation),
+        Command::Compare(args) => compare::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),

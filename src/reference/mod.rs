@@ -4,6 +4,13 @@
 //! image is the mean over all samples; half the difference of the halves' means has the variance of that mean, which is the
 //! noise that reports state.
 
+mod camera_paths;
+mod emitters;
+mod sobol;
+mod texels;
+mod traced_scene;
+pub(crate) mod tracer;
+
 use serde::{Deserialize, Serialize};
 
 use crate::renderer::Error;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::slots::Slot;
+use crate::reference::PixelFilter;
 
 /// A setting that does not exist or does not take the value given. One sentence: what, where, what to do.
 #[derive(Debug, thiserror::Error)]
@@ -52,17 +53,20 @@ pub enum Technique {
     Direct,
     /// Reflective shadow maps (Dachsbacher & Stamminger 2005): VPLs gathered at every pixel, without visibility.
     Rsm,
+    /// Path tracing and light tracing: the reference, at as many samples as time allows.
+    Path,
 }
 
 impl Technique {
     /// All techniques.
-    pub const ALL: [Technique; 2] = [Technique::Direct, Technique::Rsm];
+    pub const ALL: [Technique; 3] = [Technique::Direct, Technique::Rsm, Technique::Path];
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Technique::Direct => "direct",
             Technique::Rsm => "rsm",
+            Technique::Path => "path",
         }
     }
 
@@ -88,6 +92,12 @@ impl Technique {
         match self {
             Technique::Direct => none,
             Technique::Rsm => Methods { diffuse: DiffuseMethod::Rsm, ..none },
+            Technique::Path => Methods {
+                direct: DirectMethod::Traced,
+                diffuse: DiffuseMethod::Path,
+                caustics: CausticsMethod::Path,
+                specular: SpecularMethod::Path,
+            },
         }
     }
 }
@@ -157,6 +167,8 @@ methods! {
         None = "none",
         /// Filtered, normal-offset shadow maps.
         ShadowMap = "shadow-map",
+        /// Rays to the lights.
+        Traced = "traced",
     }
 }
 methods! {
@@ -166,6 +178,8 @@ methods! {
         None = "none",
         /// Reflective shadow maps: VPLs gathered at every pixel.
         Rsm = "rsm",
+        /// Path tracing.
+        Path = "path",
     }
 }
 methods! {
@@ -173,6 +187,8 @@ methods! {
     CausticsMethod {
         /// Not at all.
         None = "none",
+        /// Path tracing and light tracing.
+        Path = "path",
     }
 }
 methods! {
@@ -180,6 +196,8 @@ methods! {
     SpecularMethod {
         /// Not at all.
         None = "none",
+        /// Path tracing.
+        Path = "path",
     }
 }
 
@@ -206,6 +224,13 @@ impl Methods {
             Slot::Caustics => self.caustics.name(),
             Slot::Specular => self.specular.name(),
         }
+    }
+
+    /// Whether paths are traced for some slot besides `direct`.
+    pub fn traces_paths(&self) -> bool {
+        self.diffuse == DiffuseMethod::Path
+            || self.caustics == CausticsMethod::Path
+            || self.specular == SpecularMethod::Path
     }
 
     /// Chooses the method of one slot by name.
@@ -263,6 +288,20 @@ pub struct RsmSettings {
     pub vpls: u32,
 }
 
+/// Options of the methods that trace paths.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathSettings {
+    /// Samples a pixel of one frame; 1 to 1048576. Cost: linear. Noise: its inverse square root.
+    pub spp: u32,
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone; null: no limit.
+    pub bounces: Option<u32>,
+    /// Where in a pixel light is sampled: `center` or `box`.
+    pub filter: PixelFilter,
+    /// Which of the equally good sequences of samples is taken.
+    pub seed: u32,
+}
+
 /// Everything that decides how a frame is made, apart from the scene, the view and the size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -279,6 +318,8 @@ pub struct Settings {
     pub shadow: ShadowSettings,
     /// Options of the `rsm` method.
     pub rsm: RsmSettings,
+    /// Options of the `path` methods.
+    pub path: PathSettings,
 }
 
 impl Settings {
@@ -292,6 +333,7 @@ impl Settings {
             lights,
             shadow: ShadowSettings { filter_radius: 1, normal_offset: 0.05 },
             rsm: RsmSettings { vpls: 256 },
+            path: PathSettings { spp: 64, bounces: None, filter: PixelFilter::Center, seed: 0 },
         };
         let lights = default.lights.clone();
         match preset {
@@ -299,6 +341,7 @@ impl Settings {
             Preset::Draft => Settings {
                 lights: LightSettings { resolution: 256, emitter_samples: 4, emitter_resolution: 64, sky_samples: 8 },
                 rsm: RsmSettings { vpls: 64 },
+                path: PathSettings { spp: 16, ..default.path },
                 ..default
             },
             Preset::High => Settings {
@@ -310,6 +353,7 @@ impl Settings {
                 },
                 shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
                 rsm: RsmSettings { vpls: 1024 },
+                path: PathSettings { spp: 256, ..default.path },
                 ..default
             },
             // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel.
@@ -378,6 +422,7 @@ impl Settings {
                 Err("it takes 0 to 16".to_owned())
             }
             "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            "path.spp" => within(self.path.spp, 1, 1 << 20),
             _ => Ok(()),
         }
     }

@@ -22,7 +22,7 @@ const MEASURED: [&str; 8] = [
     "memory_bytes",
     "pareto",
 ];
-const ERRORS: [&str; 6] = ["rmse", "rrmse", "relmse", "psnr_db", "ssim", "flip"];
+const ERRORS: [&str; 7] = ["rmse", "rrmse", "relmse", "psnr_db", "ssim", "flip", "mean_ratio"];
 
 /// All points, scene by scene. A number that a point does not have is empty; so is a setting that its series leaves alone.
 pub fn csv(sweep: &Sweep) -> String {
@@ -56,10 +56,10 @@ fn cells(sweep: &Sweep, keys: &BTreeSet<&str>, mark: &Mark<'_>) -> Vec<String> {
     cells
 }
 
-fn error_cells(errors: Option<&ImageErrors>) -> [String; 6] {
+fn error_cells(errors: Option<&ImageErrors>) -> [String; 7] {
     let Some(errors) = errors else { return Default::default() };
-    let ImageErrors { rmse, rrmse, relmse, psnr, ssim, flip } = errors;
-    [rmse, rrmse, relmse, psnr, ssim, flip].map(f64::to_string)
+    let ImageErrors { rmse, rrmse, relmse, psnr, ssim, flip, mean_ratio } = errors;
+    [rmse, rrmse, relmse, psnr, ssim, flip, mean_ratio].map(f64::to_string)
 }
 
 #[cfg(test)]

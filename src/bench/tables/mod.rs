@@ -1,9 +1,11 @@
 //! Reports as tables: for people, for documents and for spreadsheets.
 
+mod comparison;
 mod csv;
 mod markdown;
 mod text;
 
+pub use comparison::comparison_text;
 pub use csv::csv;
 pub(crate) use csv::line as csv_line;
 pub use markdown::markdown;
