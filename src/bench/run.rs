@@ -1,10 +1,11 @@
 //! The rounds: every contender renders in every round, in turn, so that drift of the machine hits all alike.
 
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::report::{Failure, Run};
 use super::samples::Samples;
-use crate::renderer::{Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
+use crate::renderer::{ColorImage, Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
 use crate::scene::{CameraView, Scene};
 
 /// How the contenders' pictures are tone-mapped.
@@ -37,6 +38,8 @@ pub struct Options {
     pub max_seconds: Option<f64>,
     /// Whether a picture is wanted of every contender, made after the rounds.
     pub pictures: bool,
+    /// Whether the slots that a contender fills are wanted as images, made after the rounds.
+    pub slots: bool,
 }
 
 impl Options {
@@ -58,6 +61,17 @@ pub struct Finished {
     pub run: Run,
     /// The tone-mapped picture, if pictures were wanted.
     pub picture: Option<Vec<[u8; 3]>>,
+    /// The image and the slots that its methods fill, if they were wanted.
+    pub images: Option<SlotImages>,
+}
+
+/// The radiance that a contender found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlotImages {
+    /// The sum of all slots.
+    pub image: ColorImage,
+    /// The slots that its methods fill; emission is always one.
+    pub slots: BTreeMap<Slot, ColorImage>,
 }
 
 /// One set of settings and what became of it.
@@ -127,15 +141,19 @@ impl Contender {
             error,
         };
         let (mut renderer, samples) = self.state.map_err(failure)?;
-        let picture = if options.pictures {
+        let (picture, images) = if options.pictures || options.slots {
+            let filled = Slot::ALL.into_iter().filter(|slot| options.slots && settings.methods.fills(*slot));
             let request = FrameRequest {
-                tonemap: Some(PICTURE_TONE_MAP),
+                slots: filled.collect(),
+                tonemap: options.pictures.then_some(PICTURE_TONE_MAP),
                 read_back: true,
                 ..request(subject, options, Timing::Frame)
             };
-            renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?.display
+            let Frame { image, slots, display, .. } =
+                renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?;
+            (display, image.filter(|_| options.slots).map(|image| SlotImages { image, slots }))
         } else {
-            None
+            (None, None)
         };
         let methods = Slot::ALL.into_iter().map(|slot| (slot, settings.methods.name_of(slot).to_owned()));
         let run = samples.finish(Run {
@@ -150,7 +168,7 @@ impl Contender {
             load_ms: subject.load_ms,
             ..Run::default()
         });
-        Ok(Finished { run, picture })
+        Ok(Finished { run, picture, images })
     }
 }
 

@@ -10,6 +10,7 @@ mod devices;
 mod files;
 mod graph;
 mod method_args;
+mod reference;
 mod render;
 mod scene_args;
 mod scenes;
@@ -74,6 +75,7 @@ enum Command {
     Bench(bench::BenchArgs),
     Sweep(sweep::SweepArgs),
     Compare(compare::CompareArgs),
+    Reference(reference::ReferenceArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -95,6 +97,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args, &invocation),
         Command::Sweep(args) => sweep::run(args, &invocation),
         Command::Compare(args) => compare::run(args, &invocation),
+        Command::Reference(args) => reference::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),

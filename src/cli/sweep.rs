@@ -8,14 +8,16 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 use irradia::bench::report::Device;
 use irradia::bench::sweep::{self, Grid, GridScene, Group, Outcomes, Point, Shard, Sweep};
-use irradia::bench::{Options, Subject, run as measure};
+use irradia::bench::{Options, References, Subject, run as measure};
 use irradia::output;
+use irradia::reference::Cache;
 use irradia::renderer::{Context, Settings};
 use irradia::scene::{CameraView, Scene};
 
 use super::bench::write_text;
+use super::reference::open_cache;
 use super::scene_args::warn_of;
-use super::terminal::{Progress, Terminal};
+use super::terminal::{Progress, Steps, Terminal};
 use super::{Invocation, files, values};
 
 /// Measure a grid of techniques and settings on scenes: time against error
@@ -110,6 +112,7 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
 
     let earlier = args.json.as_ref().filter(|path| !args.restart && path.is_file());
     let earlier = earlier.map(|path| Sweep::read(path).map(|sweep| (path, sweep))).transpose()?;
+    let cache = grid.reference.map_or(Ok(None), |_| open_cache(false))?;
     let context = invocation.context()?;
     let mut result = Sweep::new(grid.clone(), Device::from(&context.device()));
     if let Some((path, earlier)) = earlier {
@@ -121,7 +124,16 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
 
     let pending = points.iter().filter(|point| !result.holds(point)).count();
     let progress = invocation.terminal.progress(pending as u64);
-    let mut bench = Bench { context: &context, grid: &grid, folder, opened: None, progress: &progress };
+    let terminal = invocation.terminal;
+    let mut bench = Bench {
+        context: &context,
+        grid: &grid,
+        folder,
+        opened: None,
+        cache: cache.as_ref(),
+        progress: &progress,
+        terminal,
+    };
     let mut done = 0;
     let mut measure = |group: &Group<'_>| {
         let outcome = bench.measure(group);
@@ -164,7 +176,10 @@ struct Bench<'a> {
     /// Where the grid lies: its files are seen from there.
     folder: &'a Path,
     opened: Option<Opened>,
+    /// Of the references, which are read from it again for every group.
+    cache: Option<&'a Cache>,
     progress: &'a Progress,
+    terminal: &'a Terminal,
 }
 
 struct Opened {
@@ -185,14 +200,26 @@ impl Bench<'_> {
         let subject = Subject { name, scene, camera, load_ms: *load_ms };
         let contenders: Vec<Settings> = group.points.iter().map(|point| point.settings.clone()).collect();
         let Grid { size, frames, warmup, max_seconds, .. } = *self.grid;
-        let options = Options { size, frames, warmup, max_seconds, pictures: false };
+        let slots = self.grid.reference.is_some();
+        let options = Options { size, frames, warmup, max_seconds, pictures: false, slots };
         let outcomes = measure(self.context, &subject, &contenders, &options, &mut || ());
-        self.opened = Some(opened);
-        let outcomes = outcomes.into_iter().map(|outcome| match outcome {
-            Ok(finished) => Ok(finished.run),
-            Err(failure) => Err(failure.error),
+        let mut steps = Steps::new(self.terminal, &format!("reference of {name}"));
+        let mut references = self
+            .grid
+            .reference
+            .map(|spp| References::new(self.context, &subject, size, spp, self.cache, |progress| steps.show(progress)));
+        let compared = outcomes.into_iter().zip(&contenders).map(|(outcome, settings)| {
+            let mut finished = outcome.map_err(|failure| failure.error)?;
+            if let Some(references) = &mut references {
+                let compared = references.compare(&mut finished, settings);
+                compared.map_err(|error| format!("{:#}", anyhow::Error::from(error)))?;
+            }
+            Ok(finished.run)
         });
-        Ok(outcomes.collect())
+        let compared = compared.collect();
+        drop(references);
+        self.opened = Some(opened);
+        Ok(compared)
     }
 }
 
@@ -213,7 +240,7 @@ fn print_scene(sweep: &Sweep, scene: &GridScene, terminal: &Terminal) -> Result<
 /// A plot for every scene that has points with an error.
 fn write_plots(sweep: &Sweep, folder: &Path) -> Result<()> {
     for scene in &sweep.grid.scenes {
-        match sweep::plot(sweep, &scene.name, None) {
+        match sweep::plot(sweep, &scene.name) {
             Some(text) => write_text(&folder.join(files::from_words(&[&scene.name]) + ".svg"), &text)?,
             None => tracing::warn!("{} has no point with an error, so there is no plot of it", scene.name),
         }

@@ -4,6 +4,7 @@
 //! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
 //! that outlives its renderer.
 
+mod bench_slots;
 mod direct;
 mod flux;
 mod gather;

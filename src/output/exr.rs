@@ -2,7 +2,9 @@
 //! (`diffuse.R`, `diffuse.G`, `diffuse.B`), all in one part so that any viewer opens it.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::io::{Cursor, Write as _};
+use std::ops::Range;
 use std::path::Path;
 
 use ::exr::prelude::{
@@ -10,8 +12,11 @@ use ::exr::prelude::{
     LineOrder, ReadChannels, ReadLayers, SmallVec, Text, Vec2, WritableImage,
 };
 
-use super::{AtomicFile, Attributes, OutputError};
+use super::{AtomicFile, Attributes, OutputError, seal};
 use crate::renderer::{ColorImage, Slot};
+
+/// The channels of a layer.
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// Rec.709 primaries and D65, so that a colour-managed viewer need not guess.
 const REC_709: ::exr::meta::attribute::Chromaticities = ::exr::meta::attribute::Chromaticities {
@@ -42,24 +47,68 @@ pub fn write_exr(
     slots: &BTreeMap<Slot, ColorImage>,
     attributes: &Attributes,
 ) -> Result<(), OutputError> {
-    let pixel_count = image.size[0] as usize * image.size[1] as usize;
-    let layers = slots.iter().map(|(slot, layer)| (format!("{slot}."), layer));
-    let layers: Vec<_> = [(String::new(), image)].into_iter().chain(layers).collect();
-    if let Some((name, layer)) =
-        layers.iter().find(|(_, layer)| layer.size != image.size || layer.pixels.len() != pixel_count)
-    {
-        let [width, height] = image.size;
-        let reason = format!("layer {name:?} has {} pixels, the image {width}x{height}", layer.pixels.len());
+    let [width, height] = image.size;
+    if let Some((slot, layer)) = slots.iter().find(|(_, layer)| layer.size != image.size) {
+        let reason = format!("layer {slot} has {} pixels, the image {width}x{height}", layer.pixels.len());
         return Err(OutputError::write(path, reason));
     }
-    let channels = layers.iter().flat_map(|(prefix, layer)| {
-        ["R", "G", "B"].into_iter().enumerate().map(move |(index, channel)| {
-            let samples = layer.pixels.iter().map(|pixel| pixel[index]).collect();
-            let name = text(&format!("{prefix}{channel}"));
+    let layers = slots.iter().map(|(slot, layer)| (slot.name().to_owned(), &layer.pixels[..]));
+    let layers: Vec<_> = [(String::new(), &image.pixels[..])].into_iter().chain(layers).collect();
+    write_layers(path, image.size, &layers, attributes)
+}
+
+/// Writes layers, each a name and its pixels: the channels `NAME.R`, `NAME.G`, `NAME.B`, or `R`, `G`, `B` if the name is empty.
+///
+/// # Errors
+/// The file cannot be written, or there are not `size[0] * size[1]` pixels in every layer.
+fn write_layers(
+    path: &Path,
+    size: [u32; 2],
+    layers: &[(String, &[[f32; 3]])],
+    attributes: &Attributes,
+) -> Result<(), OutputError> {
+    let bytes = encode(path, size, layers, attributes)?;
+    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+}
+
+/// As [`write_layers`], with a checksum over all of the file as one more attribute.
+///
+/// # Errors
+/// Those of [`write_layers`].
+pub(crate) fn write_sealed_layers(
+    path: &Path,
+    size: [u32; 2],
+    layers: &[(String, &[[f32; 3]])],
+    attributes: &Attributes,
+) -> Result<(), OutputError> {
+    let mut attributes = attributes.clone();
+    attributes.insert(seal::ATTRIBUTE.to_owned(), seal::OPEN.to_owned());
+    let mut bytes = encode(path, size, layers, &attributes)?;
+    seal::close(&mut bytes);
+    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+}
+
+/// The bytes of a file; `path` is for messages alone.
+fn encode(
+    path: &Path,
+    size: [u32; 2],
+    layers: &[(String, &[[f32; 3]])],
+    attributes: &Attributes,
+) -> Result<Vec<u8>, OutputError> {
+    let pixel_count = size[0] as usize * size[1] as usize;
+    if let Some((name, pixels)) = layers.iter().find(|(_, pixels)| pixels.len() != pixel_count) {
+        let [width, height] = size;
+        let reason = format!("layer {name:?} has {} pixels, the image {width}x{height}", pixels.len());
+        return Err(OutputError::write(path, reason));
+    }
+    let channels = layers.iter().flat_map(|(layer, pixels)| {
+        CHANNELS.into_iter().enumerate().map(move |(index, channel)| {
+            let samples = pixels.iter().map(|pixel| pixel[index]).collect();
+            let name = text(&channel_name(layer, channel));
             AnyChannel { name, sample_data: FlatSamples::F32(samples), quantize_linearly: false, sampling: Vec2(1, 1) }
         })
     });
-    let size = Vec2(image.size[0] as usize, image.size[1] as usize);
+    let size = Vec2(size[0] as usize, size[1] as usize);
     // Scan lines from the top, which every reader knows, tiles not being known to all.
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
@@ -74,29 +123,42 @@ pub fn write_exr(
     let mut bytes = Vec::new();
     document.write().to_buffered(Cursor::new(&mut bytes)).map_err(|error| OutputError::write(path, error))?;
     sort_attributes(&mut bytes);
-    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+    Ok(bytes)
+}
+
+fn channel_name(layer: &str, channel: &str) -> String {
+    if layer.is_empty() { channel.to_owned() } else { format!("{layer}.{channel}") }
 }
 
 /// Puts the attributes of a single-part file's header in the order of their names. The crate keeps them in a hash map and
-/// writes them in another order every time; the same frame shall make the same file. An attribute is its name, its type's
-/// name, both ended by a zero, the size of its value, and the value; a zero ends the list. Nothing else moves.
+/// writes them in another order every time; the same frame shall make the same file. Nothing else moves.
 fn sort_attributes(bytes: &mut [u8]) {
-    const START: usize = 8;
-    let mut attributes: Vec<&[u8]> = Vec::new();
-    let mut at = START;
-    while bytes.get(at).is_some_and(|&first| first != 0) {
-        let zero = |from: usize| bytes[from..].iter().position(|&byte| byte == 0).map(|length| from + length);
-        let end = zero(at).and_then(|name| zero(name + 1)).and_then(|kind| {
-            let size = bytes.get(kind + 1..kind + 5)?;
-            Some(kind + 5 + u32::from_le_bytes([size[0], size[1], size[2], size[3]]) as usize)
-        });
-        let Some(attribute) = end.and_then(|end| bytes.get(at..end)) else { return };
-        attributes.push(attribute);
-        at += attribute.len();
-    }
+    let Some(ranges) = attribute_ranges(bytes) else { return };
+    let mut attributes: Vec<&[u8]> = ranges.iter().map(|range| &bytes[range.clone()]).collect();
     attributes.sort_unstable();
     let sorted = attributes.concat();
-    bytes[START..at].copy_from_slice(&sorted);
+    bytes[ATTRIBUTES_START..][..sorted.len()].copy_from_slice(&sorted);
+}
+
+/// Where the attributes of a file's first header begin.
+const ATTRIBUTES_START: usize = 8;
+
+/// Where the attributes of a single-part file lie. An attribute is its name, its type's name, both ended by a zero, the size of
+/// its value, and the value; a zero ends the list. `None` if it is not so.
+pub(super) fn attribute_ranges(bytes: &[u8]) -> Option<Vec<Range<usize>>> {
+    let mut ranges = Vec::new();
+    let mut at = ATTRIBUTES_START;
+    while *bytes.get(at)? != 0 {
+        let after_zero =
+            |from: usize| bytes.get(from..)?.iter().position(|&byte| byte == 0).map(|length| from + length + 1);
+        let value_size = after_zero(after_zero(at)?)?;
+        let size = bytes.get(value_size..value_size + 4)?;
+        let end = value_size + 4 + u32::from_le_bytes([size[0], size[1], size[2], size[3]]) as usize;
+        bytes.get(at..end)?;
+        ranges.push(at..end);
+        at = end;
+    }
+    Some(ranges)
 }
 
 /// Reads an image and the layers that are named like slots; other channels are left out.
@@ -104,39 +166,132 @@ fn sort_attributes(bytes: &mut [u8]) {
 /// # Errors
 /// The file cannot be read or has no channels `R G B`.
 pub fn read_exr(path: &Path) -> Result<ExrImage, OutputError> {
+    let Layers { size, mut layers, channels, attributes } = read_layers(path)?;
+    let mut take = |name: &str| Some(ColorImage { size, pixels: layers.remove(name)? });
+    let image = take("").ok_or_else(|| {
+        OutputError::read(path, format!("it has no channels R, G and B, but {}", channels.join(", ")))
+    })?;
+    let slots = Slot::ALL.into_iter().filter_map(|slot| Some((slot, take(slot.name())?))).collect();
+    Ok(ExrImage { image, slots, attributes })
+}
+
+/// What [`read_layers`] finds.
+pub(crate) struct Layers {
+    /// Width and height in pixels.
+    pub(crate) size: [u32; 2],
+    /// The pixels of every layer that has the channels R, G and B, by its name; empty for the image itself.
+    pub(crate) layers: BTreeMap<String, Vec<[f32; 3]>>,
+    /// The names of all channels.
+    pub(crate) channels: Vec<String>,
+    /// The attributes that are text.
+    pub(crate) attributes: Attributes,
+}
+
+/// Reads all layers of a file of one part.
+///
+/// # Errors
+/// The file cannot be read.
+fn read_layers(path: &Path) -> Result<Layers, OutputError> {
+    decode(path, &read_bytes(path)?)
+}
+
+/// Reads what [`write_sealed_layers`] wrote. Nothing of a file is looked at before its checksum is found to be right.
+///
+/// # Errors
+/// The file cannot be read, has no checksum, or has another one than its bytes.
+pub(crate) fn read_sealed_layers(path: &Path) -> Result<Layers, SealedError> {
+    let mut bytes = read_bytes(path)?;
+    match seal::open(&mut bytes) {
+        Some(true) => Ok(decode(path, &bytes)?),
+        Some(false) => Err(SealedError::Broken),
+        None => Err(SealedError::Unsealed),
+    }
+}
+
+/// Why [`read_sealed_layers`] gives nothing.
+#[derive(Debug)]
+pub(crate) enum SealedError {
+    /// The file cannot be read.
+    Output(OutputError),
+    /// The checksum is not that of the bytes.
+    Broken,
+    /// There is no checksum.
+    Unsealed,
+}
+
+impl From<OutputError> for SealedError {
+    fn from(error: OutputError) -> SealedError {
+        SealedError::Output(error)
+    }
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, OutputError> {
+    fs::read(path).map_err(|error| OutputError::read(path, error))
+}
+
+/// No compression of OpenEXR makes images smaller than by this factor.
+const MOST_COMPRESSION: u64 = 4096;
+
+fn decode(path: &Path, bytes: &[u8]) -> Result<Layers, OutputError> {
+    let failed = |error: ::exr::error::Error| OutputError::read(path, error);
+    // The decoder believes the header; a damaged one can ask for more memory than there is.
+    let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
+    let asked =
+        meta.headers.iter().map(|header| header.layer_size.area() as u64 * header.channels.bytes_per_pixel as u64);
+    if asked.fold(0, u64::saturating_add) > MOST_COMPRESSION * bytes.len() as u64 {
+        return Err(OutputError::read(path, "it is damaged: it is too small for the images that it says it has"));
+    }
     let document = ::exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_file(path)
-        .map_err(|error| OutputError::read(path, error))?;
+        .from_buffered(Cursor::new(bytes))
+        .map_err(failed)?;
     let layer = document.layer_data;
     let size = [layer.size.x() as u32, layer.size.y() as u32];
-    let channels = &layer.channel_data.list;
-    let color_image = |prefix: &str| {
+    let channels: BTreeMap<String, &FlatSamples> =
+        layer.channel_data.list.iter().map(|channel| (string(&channel.name), &channel.sample_data)).collect();
+    let mut layers = BTreeMap::new();
+    for name in channels.keys().filter_map(|name| name.strip_suffix(CHANNELS[0])) {
+        let name = if name.is_empty() { Some(name) } else { name.strip_suffix('.') };
+        let samples = name.and_then(|name| Some((name, rgb_channels(&channels, name)?)));
+        let Some((name, samples)) = samples else { continue };
         let mut pixels = vec![[0.0; 3]; layer.size.area()];
-        for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
-            let name = format!("{prefix}{name}");
-            let channel = channels.iter().find(|channel| string(&channel.name) == name)?;
-            for (pixel, value) in pixels.iter_mut().zip(channel.sample_data.values_as_f32()) {
+        for (index, samples) in samples.into_iter().enumerate() {
+            for (pixel, value) in pixels.iter_mut().zip(samples.values_as_f32()) {
                 pixel[index] = value;
             }
         }
-        Some(ColorImage { size, pixels })
-    };
-    let image = color_image("").ok_or_else(|| {
-        let names: Vec<String> = channels.iter().map(|channel| string(&channel.name)).collect();
-        OutputError::read(path, format!("it has no channels R, G and B, but {}", names.join(", ")))
-    })?;
-    let slots = Slot::ALL.into_iter().filter_map(|slot| Some((slot, color_image(&format!("{slot}."))?))).collect();
+        layers.insert(name.to_owned(), pixels);
+    }
     let texts = document.attributes.other.iter().chain(&layer.attributes.other);
-    let attributes = texts.filter_map(|(name, value)| match value {
+    let attributes = texts.filter_map(text_attribute).collect();
+    Ok(Layers { size, layers, channels: channels.into_keys().collect(), attributes })
+}
+
+fn rgb_channels<'a>(channels: &BTreeMap<String, &'a FlatSamples>, layer: &str) -> Option<[&'a FlatSamples; 3]> {
+    let [red, green, blue] = CHANNELS.map(|channel| channels.get(&channel_name(layer, channel)).copied());
+    Some([red?, green?, blue?])
+}
+
+/// Reads the attributes that are text and nothing else of a file.
+///
+/// # Errors
+/// The file cannot be read.
+pub(crate) fn read_attributes(path: &Path) -> Result<Attributes, OutputError> {
+    let meta = ::exr::meta::MetaData::read_from_file(path, false).map_err(|error| OutputError::read(path, error))?;
+    let header = meta.headers.first().ok_or_else(|| OutputError::read(path, "it has no part"))?;
+    let texts = header.shared_attributes.other.iter().chain(&header.own_attributes.other);
+    Ok(texts.filter_map(text_attribute).collect())
+}
+
+fn text_attribute((name, value): (&Text, &AttributeValue)) -> Option<(String, String)> {
+    match value {
         AttributeValue::Text(value) => Some((string(name), string(value))),
         _ => None,
-    });
-    Ok(ExrImage { image, slots, attributes: attributes.collect() })
+    }
 }
 
 /// EXR text is bytes; we write UTF-8, as current OpenEXR does.
@@ -185,7 +340,7 @@ mod tests {
         let write = |name: &str| {
             let path = folder.0.join(name);
             write_exr(&path, &image, &BTreeMap::new(), &attributes).expect("a sound image");
-            std::fs::read(path).expect("just written")
+            fs::read(path).expect("just written")
         };
         assert!(write("a.exr") == write("b.exr"));
     }

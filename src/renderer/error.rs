@@ -12,4 +12,7 @@ pub enum Error {
     /// The frame has no pixels.
     #[error("a frame of {0}x{1} pixels cannot be made; ask for at least 1x1")]
     EmptyFrame(u32, u32),
+    /// References cannot be made in this way.
+    #[error("this build has no estimator {0:?}, so references can be read but not made")]
+    Estimator(&'static str),
 }

@@ -22,7 +22,7 @@ const MEASURED: [&str; 8] = [
     "memory_bytes",
     "pareto",
 ];
-const ERRORS: [&str; 7] = ["rmse", "rrmse", "relmse", "psnr_db", "ssim", "flip", "mean_ratio"];
+const ERRORS: [&str; 8] = ["rmse", "rrmse", "relmse", "psnr_db", "ssim", "flip", "mean_ratio", "reference_rrmse"];
 
 /// All points, scene by scene. A number that a point does not have is empty; so is a setting that its series leaves alone.
 pub fn csv(sweep: &Sweep) -> String {
@@ -52,6 +52,7 @@ fn cells(sweep: &Sweep, keys: &BTreeSet<&str>, mark: &Mark<'_>) -> Vec<String> {
     cells.extend([run.memory_bytes.to_string(), mark.pareto.to_string()]);
     for compare in [Compare::Equal, Compare::Full] {
         cells.extend(error_cells(sweep.grid.errors(run, compare)));
+        cells.push(sweep.grid.noise(run, compare).map(|noise| noise.to_string()).unwrap_or_default());
     }
     cells
 }

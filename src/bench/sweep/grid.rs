@@ -171,6 +171,15 @@ impl Grid {
         entries.as_ref()?.get(&self.entry)
     }
 
+    /// The relative noise of what the entry of a run was compared with; `None` if it was not.
+    pub fn noise(&self, run: &Run, compare: Compare) -> Option<f64> {
+        let entries = match compare {
+            Compare::Full => &run.noise_full,
+            Compare::Equal => &run.noise,
+        };
+        entries.as_ref()?.get(&self.entry).copied()
+    }
+
     /// What the error is, for a title: `relative RMSE of the image against full light transport`.
     pub fn error_words(&self) -> String {
         let entry = match self.entry.as_str() {

@@ -5,6 +5,7 @@ use plotters::style::text_anchor::HPos;
 
 use super::canvas::{Canvas, Drawn, FAINT_GRID, FAINT_INK, GRID, INK, Point, body, colour, darker, small, title};
 use super::chart::{Area, LogAxis, Places, number_label, time_label};
+use super::grid::Metric;
 use super::lines::{Line, lines};
 use super::points::written;
 use super::result::Sweep;
@@ -18,10 +19,10 @@ const LEGEND_TOP: i32 = 88;
 const LEGEND_ROW: i32 = 22;
 const LEGEND_GAP: i32 = 18;
 
-/// The plot of a scene; the same result gives the same bytes. `noise` is the error that the reference itself has by its
-/// noise, if that is known. `None` if no point has both a time and an error.
-pub fn plot(sweep: &Sweep, scene: &str, noise: Option<f64>) -> Option<String> {
+/// The plot of a scene; the same result gives the same bytes. `None` if no point has both a time and an error.
+pub fn plot(sweep: &Sweep, scene: &str) -> Option<String> {
     let lines = lines(sweep, scene);
+    let noise = noise(sweep, &lines);
     let pairs: Vec<(f64, f64)> = lines.iter().flat_map(|line| line.pairs()).filter(|pair| drawable(*pair)).collect();
     let legend = Legend::of(&lines);
     let top = LEGEND_TOP + LEGEND_ROW * (legend.rows - 1) + LEGEND_GAP;
@@ -41,6 +42,13 @@ pub fn plot(sweep: &Sweep, scene: &str, noise: Option<f64>) -> Option<String> {
     drawn.expect("a string takes whatever is written to it");
     drop(canvas);
     Some(text)
+}
+
+/// The error that the references have by their own noise, the largest of them. It is known as a relative RMSE alone.
+fn noise(sweep: &Sweep, lines: &[Line<'_>]) -> Option<f64> {
+    let runs = lines.iter().flat_map(|line| &line.marks).map(|mark| &mark.measured.run);
+    let noises = runs.filter_map(|run| sweep.grid.noise(run, sweep.grid.compare));
+    noises.filter(|noise| sweep.grid.metric == Metric::Rrmse && drawable((1.0, *noise))).max_by(f64::total_cmp)
 }
 
 /// Whether a pair has a place on logarithmic axes.
@@ -123,7 +131,7 @@ impl Canvas<'_> {
 
     /// What no error can honestly be below.
     fn noise(&self, frame: &Area, y: &LogAxis, noise: Option<f64>) -> Drawn {
-        let Some(noise) = noise.filter(|noise| drawable((1.0, *noise))) else { return Ok(()) };
+        let Some(noise) = noise else { return Ok(()) };
         let at = y.place(noise);
         self.dashed(&[(frame.left, at), (frame.right, at)], FAINT_INK)?;
         self.text((frame.right - 4, at - 9), "noise of the reference", &small(FAINT_INK), HPos::Right)
@@ -205,6 +213,8 @@ fn shortened(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use plotters::style::RGBColor;
     use roxmltree::Document;
 
@@ -227,8 +237,11 @@ mod tests {
     #[test]
     fn a_plot_has_a_line_for_every_series_and_labels_its_points() {
         let mut sweep = whole();
+        for measured in &mut sweep.points {
+            measured.run.noise_full = Some(BTreeMap::from([("image".to_owned(), 0.03)]));
+        }
         sweep.device.name = "A <device> & \"more\"".to_owned();
-        let text = plot(&sweep, "ring", Some(0.03)).expect("points with errors");
+        let text = plot(&sweep, "ring").expect("points with errors");
         let document = Document::parse(&text).expect("well-formed");
         // The line itself and its piece in the legend.
         for (series, count) in [(0, 5), (1, 2)] {
@@ -243,14 +256,15 @@ mod tests {
         }
         assert!(texts.iter().any(|text| text.contains("A <device> & \"more\"")), "{texts:?}");
         assert!(texts.iter().any(|text| text.contains("full light transport, reference of 64 samples")), "{texts:?}");
-        assert!(!plot(&sweep, "ring", None).expect("points").contains("noise of the reference"));
+        sweep.grid.metric = Metric::Relmse;
+        assert!(!plot(&sweep, "ring").expect("points").contains("noise of the reference"), "it is no relMSE");
     }
 
     #[test]
     fn the_same_result_is_the_same_plot() {
         let text = serde_json::to_string(&whole()).expect("plain data");
         let again: Sweep = serde_json::from_str(&text).expect("its own");
-        assert_eq!(plot(&again, "ring", None), plot(&whole(), "ring", None));
+        assert_eq!(plot(&again, "ring"), plot(&whole(), "ring"));
     }
 
     #[test]
@@ -260,10 +274,10 @@ mod tests {
             measured.run.error_full.as_mut().expect("compared").get_mut("image").expect("there").rrmse = rrmse;
         }
         sweep.points[5].run.error_full = None;
-        let text = plot(&sweep, "ring", None).expect("two points are left");
+        let text = plot(&sweep, "ring").expect("two points are left");
         let document = Document::parse(&text).expect("well-formed");
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
         assert_eq!(strokes(&document, 0).len(), 1, "a single point is no line");
-        assert_eq!(plot(&sweep, "maze", None), None);
+        assert_eq!(plot(&sweep, "maze"), None);
     }
 }
