@@ -21,6 +21,7 @@ layout(push_constant, scalar) uniform Push {
     uint reserved;
 } push;
 
+#include "path/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void main() {

@@ -13,6 +13,7 @@ layout(set = 0, binding = 2) uniform usamplerBuffer bvh_nodes;
 layout(set = 0, binding = 3) uniform samplerBuffer bvh_triangles;
 layout(set = 0, binding = 4) writeonly buffer HitBlock { vec4 path_hits[]; };
 
+#include "path/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void main() {

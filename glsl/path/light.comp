@@ -1,6 +1,5 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
 #include "lib/texels.glsl"
 #include "path/emitters.glsl"
@@ -40,6 +39,10 @@ layout(set = 0, binding = 14) uniform samplerBuffer texels;
 layout(set = 0, binding = 15) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
 layout(set = 0, binding = 16) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
 layout(set = 0, binding = 17) buffer QueueBlock { uint connections[]; };
+
+layout(set = 0, binding = 18) uniform usamplerBuffer bvh_nodes;
+
+#include "lib/ray_offset.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;

@@ -1,6 +1,5 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -23,6 +22,10 @@ layout(set = 0, binding = 4) buffer RayBlock { vec4 path_rays[]; };
 layout(set = 0, binding = 5) buffer StateBlock { vec4 path_states[]; };
 layout(set = 0, binding = 6) buffer FlagBlock { uint path_flags[]; };
 layout(set = 0, binding = 7) buffer QueueBlock { uint active_paths[]; };
+
+layout(set = 0, binding = 8) uniform usamplerBuffer bvh_nodes;
+
+#include "lib/ray_offset.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint depth;  // vertices before this one

@@ -5,6 +5,7 @@
 //! that outlives its renderer.
 
 mod bench_slots;
+mod bvh;
 mod direct;
 mod flux;
 mod gather;

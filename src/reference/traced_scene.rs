@@ -13,6 +13,7 @@ use crate::frame::scene_data::{material_record, texture_kinds};
 use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
+use crate::scene::bvh::{Bvh, BvhTriangle};
 use crate::scene::{Alpha, Bounds, Facts, Material, Primitive, Scene};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
@@ -113,10 +114,15 @@ impl TracedScene {
             emitter_table(&triangles, scene.materials(), &lights, radius);
         let records: Vec<[[u32; 4]; 4]> =
             triangles.iter().zip(&light_densities).map(|(triangle, density)| triangle.record(*density)).collect();
-        let corner_list: Vec<[Vec3; 3]> = triangles.iter().map(|triangle| triangle.corners).collect();
         let masked = |material: u32| scene.materials()[material as usize].alpha != Alpha::Opaque;
-        let flags: Vec<u32> = triangles.iter().map(|triangle| u32::from(masked(triangle.material))).collect();
-        let bvh = brute_force(&corner_list, &flags);
+        let bvh_triangles: Vec<BvhTriangle> = triangles
+            .iter()
+            .map(|triangle| BvhTriangle {
+                corners: triangle.corners.map(|corner| corner.to_array()),
+                flags: u32::from(masked(triangle.material)),
+            })
+            .collect();
+        let bvh = Bvh::build(&bvh_triangles);
         let texels = Texels::new(scene.textures())?;
         let materials: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
         let media: Vec<[f32; 4]> = scene.materials().iter().map(medium).collect();
@@ -131,8 +137,8 @@ impl TracedScene {
             Ok::<_, VulkanError>((name, buffer_with(device, name, bytes, usage)?, format))
         };
         let buffers = vec![
-            upload("traced.bvh_nodes", bytemuck::cast_slice(&bvh.0), WORDS)?,
-            upload("traced.bvh_triangles", bytemuck::cast_slice(&bvh.1), FLOATS)?,
+            upload("traced.bvh_nodes", bytemuck::cast_slice(&bvh.nodes), WORDS)?,
+            upload("traced.bvh_triangles", bytemuck::cast_slice(&bvh.triangles), FLOATS)?,
             upload("traced.triangles", bytemuck::cast_slice(&records), WORDS)?,
             upload("traced.corner_normals", bytemuck::cast_slice(&corners.normals), FLOATS)?,
             upload("traced.corner_colors", bytemuck::cast_slice(&corners.colors), BYTES)?,
@@ -316,15 +322,4 @@ impl Corners {
             self.tangents.push([0.0; 4]);
         }
     }
-}
-
-fn brute_force(corners: &[[Vec3; 3]], flags: &[u32]) -> (Vec<[u32; 4]>, Vec<[[f32; 4]; 3]>) {
-    let triangles = (0..).zip(corners.iter().zip(flags)).map(|(index, ([a, b, c], flags))| {
-        [
-            a.extend(f32::from_bits(index)).to_array(),
-            (b - a).extend(f32::from_bits(*flags)).to_array(),
-            (c - a).extend(0.0).to_array(),
-        ]
-    });
-    (vec![[0; 4]], triangles.collect())
 }

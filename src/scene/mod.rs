@@ -13,6 +13,7 @@
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
 //! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
+//! | `bvh` | the hierarchy that shaders trace rays through |
 //! | `rays` | rays against all triangles, for those views |
 //! | `gltf/` | reading files |
 //! | `builtin` | the scenes that come with irradia |
@@ -22,6 +23,7 @@
 mod animation;
 mod auto_view;
 mod builtin;
+pub(crate) mod bvh;
 mod camera;
 mod content_hash;
 mod digest;
