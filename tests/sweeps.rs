@@ -109,6 +109,29 @@ fn shards_of_a_sweep_resume_and_merge() {
 }
 
 #[test]
+fn points_are_compared_with_references_and_plotted() {
+    let folder = folder("compared");
+    let [json, plots, cache] = ["out.json", "plots", "cache"].map(|name| folder.join(name));
+    let grid = root().join("sweeps/quick.toml");
+    let arguments = ["sweep", text(&grid), "--size", "32x24", "--reference", "16", "--json", text(&json)];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+    command.args(arguments).args(["--plots", text(&plots)]).env("IRRADIA_CACHE_DIR", &cache);
+    let output = command.output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let sweep = Sweep::read(&json).expect("its own");
+    assert_eq!((sweep.grid.size, sweep.grid.reference, sweep.points.len()), ([32, 24], Some(16), 6));
+    for measured in &sweep.points {
+        assert!(sweep.grid.error(&measured.run).is_some_and(|error| error > 0.0), "{}", measured.id);
+        let equal = measured.run.reference.as_ref().expect("compared");
+        assert_eq!(equal.bounces, Some(1), "the light paths of rsm");
+    }
+    for scene in ["cornell-point", "ring"] {
+        let svg = fs::read_to_string(plots.join(scene).with_extension("svg")).expect("a plot for every scene");
+        assert!(svg.contains(scene) && svg.contains("noise of the reference"), "{svg}");
+    }
+}
+
+#[test]
 fn failed_points_do_not_stop_the_others() {
     let folder = folder("failures");
     let [grid, json, broken] = ["grid.toml", "out.json", "broken.glb"].map(|name| folder.join(name));

@@ -125,9 +125,10 @@ pub(super) struct Places {
 /// A piece of a line, pixels.
 pub(super) type Segment = [(i32, i32); 2];
 
-/// Height of a label and the mean width of its characters, pixels; fonts differ, so both are generous.
+/// Height of a label, the mean width of its characters, and the room around it, pixels; fonts differ, so all are generous.
 const LABEL_HEIGHT: i32 = 14;
 const LABEL_CHARACTER: f64 = 7.2;
+const LABEL_ROOM: i32 = 3;
 
 impl Places {
     /// Places within `frame` that keep clear of markers and lines.
@@ -135,11 +136,17 @@ impl Places {
         Places { frame, taken: markers, segments }
     }
 
+    /// Keeps clear of these too.
+    pub(super) fn take(&mut self, areas: impl Iterator<Item = Area>, segments: Vec<Segment>) {
+        self.taken.extend(areas);
+        self.segments.extend(segments);
+    }
+
     /// The centre of a label near `point`, where it hides least; the place is taken from then on.
     pub(super) fn find(&mut self, point: (i32, i32), text: &str) -> (i32, i32) {
-        let half_width = (0.5 * LABEL_CHARACTER * text.chars().count() as f64).ceil() as i32;
+        let half_width = (0.5 * LABEL_CHARACTER * text.chars().count() as f64).ceil() as i32 + LABEL_ROOM;
         let half_height = LABEL_HEIGHT / 2;
-        let aside = half_width + 8;
+        let aside = half_width + 6;
         let above = half_height + 9;
         let offsets = [
             (0, -above),

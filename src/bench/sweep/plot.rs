@@ -29,14 +29,17 @@ pub fn plot(sweep: &Sweep, scene: &str) -> Option<String> {
     let x = LogAxis::around(pairs.iter().map(|pair| pair.0), LEFT, RIGHT)?;
     let y = LogAxis::around(pairs.iter().map(|pair| pair.1).chain(noise), BOTTOM, top)?;
     let frame = Area { left: LEFT, top, right: RIGHT, bottom: BOTTOM };
+    let y_of_noise = noise.map(|noise| y.place(noise));
+    let label_of_noise = y_of_noise.map(|at| Area { left: RIGHT - 150, top: at - 17, right: RIGHT, bottom: at + 1 });
+    let places = Places::new(frame, label_of_noise.into_iter().collect(), Vec::new());
     let mut text = String::new();
     let canvas = Canvas::new(&mut text, SIZE);
     let drawn = canvas
         .blank()
         .and_then(|()| canvas.head(sweep, scene))
         .and_then(|()| canvas.axes(sweep, &frame, &x, &y))
-        .and_then(|()| canvas.noise(&frame, &y, noise))
-        .and_then(|()| canvas.lines(&lines, &frame, &x, &y))
+        .and_then(|()| canvas.noise(&frame, y_of_noise))
+        .and_then(|()| canvas.lines(&lines, places, &x, &y))
         .and_then(|()| canvas.legend(&legend))
         .and_then(|()| canvas.present());
     drawn.expect("a string takes whatever is written to it");
@@ -130,15 +133,14 @@ impl Canvas<'_> {
     }
 
     /// What no error can honestly be below.
-    fn noise(&self, frame: &Area, y: &LogAxis, noise: Option<f64>) -> Drawn {
-        let Some(noise) = noise else { return Ok(()) };
-        let at = y.place(noise);
+    fn noise(&self, frame: &Area, at: Option<i32>) -> Drawn {
+        let Some(at) = at else { return Ok(()) };
         self.dashed(&[(frame.left, at), (frame.right, at)], FAINT_INK)?;
         self.text((frame.right - 4, at - 9), "noise of the reference", &small(FAINT_INK), HPos::Right)
     }
 
     /// The front below, then the lines, their markers, and what varies beside them.
-    fn lines(&self, lines: &[Line<'_>], frame: &Area, x: &LogAxis, y: &LogAxis) -> Drawn {
+    fn lines(&self, lines: &[Line<'_>], mut places: Places, x: &LogAxis, y: &LogAxis) -> Drawn {
         let place = |pair: (f64, f64)| (x.place(pair.0), y.place(pair.1));
         let (mut markers, mut segments, mut labels, mut front) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for line in lines {
@@ -173,7 +175,7 @@ impl Canvas<'_> {
             self.marker(*at, *series)?;
         }
         let areas = markers.iter().map(|(at, _, pareto)| Area::around(*at, if *pareto { 9 } else { 5 }));
-        let mut places = Places::new(*frame, areas.collect(), segments);
+        places.take(areas, segments);
         for (at, series, label) in labels.iter().filter(|(_, _, label)| !label.is_empty()) {
             self.text(places.find(*at, label), label, &small(darker(colour(*series))), HPos::Center)?;
         }
@@ -256,8 +258,8 @@ mod tests {
         }
         assert!(texts.iter().any(|text| text.contains("A <device> & \"more\"")), "{texts:?}");
         assert!(texts.iter().any(|text| text.contains("full light transport, reference of 64 samples")), "{texts:?}");
-        sweep.grid.metric = Metric::Relmse;
-        assert!(!plot(&sweep, "ring").expect("points").contains("noise of the reference"), "it is no relMSE");
+        sweep.grid.metric = Metric::Rmse;
+        assert!(!plot(&sweep, "ring").expect("points").contains("noise of the reference"), "it is relative");
     }
 
     #[test]
