@@ -195,6 +195,8 @@ impl Bench<'_> {
             settings,
             device: &device,
             tonemap: Some(PICTURE_TONE_MAP),
+            aa: 1,
+            estimate: None,
         };
         Ok(output::write_png(&path, run.size, pixels, &picture.attributes())?)
     }

@@ -8,8 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::tables;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::{
-    Cache, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name, filter_name,
-    merge,
+    Cache, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name, merge,
 };
 
 use super::scene_args::SceneArgs;
@@ -40,7 +39,7 @@ pub(crate) struct ReferenceArgs {
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
     /// Where in a pixel light is sampled
-    #[arg(long, value_parser = filter(), default_value = "center")]
+    #[arg(long, value_parser = values::pixel_filter(), default_value = "center")]
     filter: PixelFilter,
     /// Which of the equally good sequences of samples is taken
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -195,14 +194,6 @@ fn estimator() -> impl TypedValueParser<Value = Estimator> {
     PossibleValuesParser::new(ALL.map(estimator_name)).try_map(|name| {
         let found = ALL.into_iter().find(|estimator| estimator_name(*estimator) == name);
         found.ok_or_else(|| format!("there is no estimator {name:?}"))
-    })
-}
-
-fn filter() -> impl TypedValueParser<Value = PixelFilter> {
-    const ALL: [PixelFilter; 2] = [PixelFilter::Center, PixelFilter::Box];
-    PossibleValuesParser::new(ALL.map(filter_name)).try_map(|name| {
-        let found = ALL.into_iter().find(|filter| filter_name(*filter) == name);
-        found.ok_or_else(|| format!("there is no filter {name:?}"))
     })
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::output::ImageFormat;
+use irradia::reference::{PixelFilter, filter_name};
 use irradia::renderer::{Preset, Settings, Slot, Technique, ToneMap};
 
 /// `WxH`, both at least 1.
@@ -119,6 +120,14 @@ pub(crate) fn slot_choice() -> impl TypedValueParser<Value = Choice<Slot>> {
             return Ok(Choice::All);
         }
         Slot::from_name(&name).map(Choice::One).ok_or_else(|| format!("there is no slot {name:?}"))
+    })
+}
+
+pub(crate) fn pixel_filter() -> impl TypedValueParser<Value = PixelFilter> {
+    const ALL: [PixelFilter; 2] = [PixelFilter::Center, PixelFilter::Box];
+    PossibleValuesParser::new(ALL.map(filter_name)).try_map(|name| {
+        let found = ALL.into_iter().find(|filter| filter_name(*filter) == name);
+        found.ok_or_else(|| format!("there is no filter {name:?}"))
     })
 }
 

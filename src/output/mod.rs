@@ -9,6 +9,7 @@ mod header;
 mod layers;
 mod png;
 mod seal;
+mod supersample;
 pub mod tonemap;
 
 use std::collections::BTreeMap;
@@ -18,6 +19,7 @@ pub use self::atomic_file::{AtomicFile, check_target};
 pub use self::exr::{ExrImage, read_exr, write_exr};
 pub(crate) use self::layers::{SealedError, read_attributes, read_sealed_layers, write_sealed_layers};
 pub use self::png::write_png;
+pub use self::supersample::box_reduced;
 
 /// What a picture is of, by name: scene, settings, device, version …
 pub type Attributes = BTreeMap<String, String>;
