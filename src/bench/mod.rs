@@ -15,6 +15,7 @@ pub mod rows;
 mod run;
 mod samples;
 pub mod statistics;
+pub mod sweep;
 pub mod tables;
 mod units;
 

@@ -1,6 +1,7 @@
 //! The rounds: every contender renders in every round, in turn, so that drift of the machine hits all alike.
 
 use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
 use super::report::{Failure, Run};
 use super::samples::Samples;
@@ -32,6 +33,9 @@ pub struct Options {
     pub frames: u32,
     /// Frames of each contender before the rounds, after its first one.
     pub warmup: u32,
+    /// A contender begins no frame of warm-up and no round after it has rendered for this long, seconds; its first round it
+    /// always has. `None`: all of them.
+    pub max_seconds: Option<f64>,
     /// Whether a picture is wanted of every contender, made after the rounds.
     pub pictures: bool,
     /// Whether the slots that a contender fills are wanted as images, made after the rounds.
@@ -42,6 +46,11 @@ impl Options {
     /// The frames that one contender renders for its timings.
     pub fn frames_per_contender(&self) -> u64 {
         1 + u64::from(self.warmup) + 3 * u64::from(self.frames)
+    }
+
+    /// Whether a contender that has rendered for so long has had its time.
+    fn over(&self, rendered: Duration) -> bool {
+        self.max_seconds.is_some_and(|seconds| rendered.as_secs_f64() > seconds)
     }
 }
 
@@ -72,6 +81,8 @@ type Outcome = Result<Finished, Failure>;
 struct Contender {
     settings: Settings,
     state: Result<(Renderer, Samples), String>,
+    /// Host time of all its frames.
+    rendered: Duration,
 }
 
 /// Measures `contenders` on one scene. Each has a renderer of its own, all alive at once. First each renders one frame
@@ -93,8 +104,8 @@ pub fn run(
     for contender in &mut contenders {
         contender.proceed(|renderer, samples| warm_up(renderer, samples, subject, options, progress));
     }
-    for _ in 0..options.frames {
-        for contender in &mut contenders {
+    for index in 0..options.frames {
+        for contender in contenders.iter_mut().filter(|contender| index == 0 || !options.over(contender.rendered)) {
             contender.proceed(|renderer, samples| round(renderer, samples, subject, options, progress));
         }
     }
@@ -108,15 +119,17 @@ impl Contender {
     fn new(context: &Context, settings: &Settings) -> Contender {
         let renderer = Renderer::new(context, settings.clone());
         let state = renderer.map(|renderer| (renderer, Samples::default())).map_err(|error| sentence(&error));
-        Contender { settings: settings.clone(), state }
+        Contender { settings: settings.clone(), state, rendered: Duration::ZERO }
     }
 
     /// Renders on unless the contender has failed before.
     fn proceed(&mut self, step: impl FnOnce(&mut Renderer, &mut Samples) -> Result<(), Stopped>) {
         let Ok((renderer, samples)) = &mut self.state else { return };
+        let start = Instant::now();
         if let Err(error) = step(renderer, samples) {
             self.state = Err(sentence(&*error));
         }
+        self.rendered += start.elapsed();
     }
 
     fn finish(self, subject: &Subject<'_>, options: &Options) -> Outcome {
@@ -167,8 +180,12 @@ fn warm_up(
     options: &Options,
     progress: &mut dyn FnMut(),
 ) -> Result<(), Stopped> {
+    let start = Instant::now();
     samples.add_first(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
     for index in 0..options.warmup {
+        if options.over(start.elapsed()) {
+            break;
+        }
         renderer.invalidate();
         let timing = if index % 2 == 0 { Timing::Passes } else { Timing::Frame };
         samples.add_warmup(&render(renderer, subject, options, timing, progress)?.timings);

@@ -121,7 +121,7 @@ impl Bench<'_> {
         }
         let pictures = args.images.is_some();
         let (size, frames, warmup) = (args.scene_args.size, args.frames, args.warmup);
-        let options = Options { size, frames, warmup, pictures, slots: args.reference.is_some() };
+        let options = Options { size, frames, warmup, max_seconds: None, pictures, slots: args.reference.is_some() };
         let cache = args.reference.map_or(Ok(None), |_| reference::open_cache(args.no_cache))?;
         let context = invocation.context()?;
         if let Some(folder) = &args.images {
@@ -210,7 +210,7 @@ fn write_reports(args: &BenchArgs, report: &Report) -> Result<()> {
     write(&args.md, &|| Ok(tables::markdown(report)))
 }
 
-fn write_text(path: &Path, text: &str) -> Result<()> {
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
     Ok(AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?)
 }
 

@@ -14,6 +14,7 @@ mod reference;
 mod render;
 mod scene_args;
 mod scenes;
+mod sweep;
 mod terminal;
 mod values;
 
@@ -72,6 +73,7 @@ enum ValidationChoice {
 enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
+    Sweep(sweep::SweepArgs),
     Compare(compare::CompareArgs),
     Reference(reference::ReferenceArgs),
     Graph(graph::GraphArgs),
@@ -93,6 +95,7 @@ pub(crate) fn main() -> ExitCode {
     let done = match &cli.command {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
+        Command::Sweep(args) => sweep::run(args, &invocation),
         Command::Compare(args) => compare::run(args, &invocation),
         Command::Reference(args) => reference::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),

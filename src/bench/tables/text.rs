@@ -58,7 +58,7 @@ fn text_cells(row: &Row) -> Vec<Cell> {
 }
 
 /// A table without vertical rules, the columns of `numbers` aligned to the right.
-pub(super) fn table(header: &[&str], numbers: &[usize]) -> Table {
+pub(crate) fn table(header: &[&str], numbers: &[usize]) -> Table {
     let rule = LineStyle::none().fill('─').junction('─');
     let mut table = Table::new();
     table.load_style(TableStyle::new().top_border(rule).header_separator(rule).bottom_border(rule));
