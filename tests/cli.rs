@@ -334,3 +334,32 @@ fn a_failing_scene_does_not_stop_the_bench() {
     let pictures = report.runs.iter().map(|run| format!("{}-{}-default.png", run.scene, run.technique));
     assert_eq!(names_in(&images), pictures.collect::<Vec<_>>());
 }
+
+#[test]
+fn the_bench_says_how_far_techniques_are_from_references() {
+    let folder = folder("bench-reference");
+    let (json, cache) = (folder.join("a.json"), folder.join("cache"));
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+        let output = command.args(arguments).env("IRRADIA_CACHE_DIR", &cache).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    let measured = ["--technique", "direct,rsm", "--frames", "1", "--warmup", "0", "--size", "32x24"];
+    let tables =
+        run(&[&["bench", "cornell-point"], &measured[..], &["--reference", "16", "--json", text(&json)]].concat());
+    assert!(tables.contains("rrmse") && tables.contains("covered"), "{tables}");
+    let report: Report = serde_json::from_str(&fs::read_to_string(&json).expect("written")).expect("the schema");
+    let [direct, rsm] = &report.runs[..] else { panic!("{} runs", report.runs.len()) };
+    let bounces = [direct, rsm].map(|run| run.reference.as_ref().and_then(|reference| reference.bounces));
+    assert_eq!(bounces, [Some(0), Some(1)]);
+    assert!(rsm.reference_full.as_ref().is_some_and(|full| full.bounces.is_none() && full.spp == 16));
+    let rrmse = |run: &irradia::bench::report::Run, part: &str| run.error.as_ref().expect("compared")[part].rrmse;
+    assert!(rrmse(direct, "direct") < 0.2, "both are the same light: {}", rrmse(direct, "direct"));
+    assert!(rsm.error_full.as_ref().is_some_and(|errors| errors["image"].rrmse < 1.0));
+    assert_eq!(names_in(&cache).len(), 3, "one without, one with one bounce, one without limit");
+    let made = run(&["reference", "cornell-point", "--spp", "16", "--size", "32x24"]);
+    assert!(made.contains("16 samples per pixel") && made.contains("rays/s"), "{made}");
+    assert_eq!(names_in(&cache).len(), 3, "the bench made this one");
+    assert!(run(&["reference", "--list"]).contains("cornell-point"));
+}
