@@ -199,11 +199,6 @@ impl Graph<'_> {
             recorder.timestamp(&self.store.queries, 3 + 2 * slot);
             recorder.full_barrier();
             self.record_counters(index, counters);
-        } else if !pass.counters.is_empty() {
-            // What a pass counts is part of its result: whether there is more to do may hang on it.
-            recorder.full_barrier();
-            self.record_counters(index, counters);
-            recorder.full_barrier();
         }
         self.record_marker(pass, slot);
         recorder.end_label();
