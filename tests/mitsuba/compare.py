@@ -135,16 +135,23 @@ def write_images(folder, name, irradia, mitsuba):
     mi.Bitmap((np.concatenate(pictures, axis=1) * 255).astype(np.uint8)).write(str(Path(folder) / f"{name}.png"))
 
 
-def table(rows):
-    names = ["scene", *next(iter(rows.values())).keys()]
-    print("| " + " | ".join(names) + " |")
-    print("|---|" + "---:|" * (len(names) - 1))
-    for scene, row in rows.items():
-        print(f"| {scene} | " + " | ".join(value if isinstance(value, str) else f"{value:.4f}" for value in row.values()) + " |")
+class Table:
+    """A table that appears line by line."""
+
+    def __init__(self):
+        self.has_head = False
+
+    def add(self, scene, row):
+        if not self.has_head:
+            print("| scene | " + " | ".join(row) + " |")
+            print("|---|" + "---:|" * len(row))
+            self.has_head = True
+        cells = [value if isinstance(value, str) else f"{value:.4f}" for value in row.values()]
+        print(f"| {scene} | " + " | ".join(cells) + " |", flush=True)
 
 
 def compare_references(options):
-    rows, all_agree = {}, True
+    rows, all_agree = Table(), True
     irradia = Irradia(options.irradia)
     same = [] if options.bounces is None else ["--bounces", str(options.bounces)]
     same += [] if options.sky is None else ["--sky", ",".join(map(str, options.sky))]
@@ -158,19 +165,17 @@ def compare_references(options):
         loaded = gltf_to_mitsuba.load(path, options.size, sky=options.sky)
         mitsuba_half = max(1, (options.mitsuba_spp or options.spp) // 2)
         theirs = Estimate(*(gltf_to_mitsuba.render(loaded, mitsuba_half, seed, options.bounces) for seed in (1, 2)))
-        rows[name], agrees = compare(ours, theirs)
-        rows[name]["verdict"] = "agrees" if agrees else "DIFFERS"
+        row, agrees = compare(ours, theirs)
+        rows.add(name, {**row, "verdict": "agrees" if agrees else "DIFFERS"})
         all_agree &= agrees
-        print(f"{name}: {rows[name]['verdict']}", file=sys.stderr)
         if options.images:
             write_images(options.images, name, ours, theirs)
-    table(rows)
     return all_agree
 
 
 def compare_direct(options):
     """Shadow edges differ, so the lit pixels' ratios count: their median and quartiles."""
-    rows, all_agree = {}, True
+    rows, all_agree = Table(), True
     irradia = Irradia(options.irradia)
     for name in options.scenes or DIRECT:
         path = path_of(name)
@@ -182,19 +187,19 @@ def compare_direct(options):
         low, median, high = np.quantile(ratios, [0.05, 0.5, 0.95])
         agrees = abs(median - 1) < 0.002 and low > 0.98 and high < 1.02
         all_agree &= agrees
-        rows[name] = {
+        row = {
             "mean ratio": ours.mean() / theirs.mean(),
             "5 % of lit pixels below": low,
             "median": median,
             "5 % above": high,
             "verdict": "agrees" if agrees else "DIFFERS",
         }
-    table(rows)
+        rows.add(name, row)
     return all_agree
 
 
 def compare_published(options):
-    rows = {}
+    rows = Table()
     for name in options.scenes or PUBLISHED:
         path = path_of(name)
         published = read_exr(path.parent / "reference.exr")
@@ -204,15 +209,15 @@ def compare_published(options):
             scale += 1
         size = (width // scale, height // scale)
         published = published.reshape(size[1], scale, size[0], scale, 3).mean(axis=(1, 3))
-        rows[name] = {"size": f"{size[0]}x{size[1]}"}
+        row = {"size": f"{size[0]}x{size[1]}"}
         for model, replace in (("glTF", None), ("source", source_materials.bsdf_of)):
             loaded = gltf_to_mitsuba.load(path, size, replace=replace)
             for label, bounces in (("direct", 0), ("depth 8", 6), ("all", None)):
                 image = gltf_to_mitsuba.render(loaded, options.spp, bounces=bounces)
                 lit = published > 1e-4
-                rows[name][f"{model}, {label}: mean"] = image.mean() / published.mean()
-                rows[name][f"{model}, {label}: median"] = float(np.median(image[lit] / published[lit]))
-    table(rows)
+                row[f"{model}, {label}: mean"] = image.mean() / published.mean()
+                row[f"{model}, {label}: median"] = float(np.median(image[lit] / published[lit]))
+        rows.add(name, row)
     return True
 
 
