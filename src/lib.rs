@@ -1,6 +1,7 @@
 //! irradia: a headless Vulkan engine for global illumination.
 
 pub mod bench;
+pub mod metrics;
 pub mod output;
 pub mod reference;
 pub mod renderer;

@@ -105,6 +105,46 @@ fn wrong_usage_is_status_2() {
 }
 
 #[test]
+fn wrong_usage_of_references_is_status_2() {
+    assert_wrong_usage(&["reference"], &["SCENE"]);
+    assert_wrong_usage(&["reference", "ring"], &["--spp"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "0"], &["--spp"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--estimator", "magic"], &["path", "sppm"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--filter", "wide"], &["center", "box"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "-o", "a.png"], &[".exr"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--shard", "1/4"], &["--output"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--shard", "5/4", "-o", "a.exr"], &["I/N"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--noise", "0%"], &["percentage"]);
+    assert_wrong_usage(&["reference", "ring", "--merge", "a.exr"], &["--merge"]);
+    assert_wrong_usage(&["reference", "--merge", "a.exr", "--no-cache"], &["-o FILE.exr"]);
+    assert_wrong_usage(&["reference", "--list", "--clear", "all"], &["--clear"]);
+    assert_wrong_usage(&["reference", "--clear", "ring"], &["hexadecimal"]);
+    assert_wrong_usage(&["bench", "ring", "--reference", "0"], &["--reference"]);
+    assert_wrong_usage(&["bench", "ring", "--no-cache"], &["--reference"]);
+}
+
+#[test]
+fn the_cache_of_references_is_listed_and_cleared_without_a_device() {
+    let folder = folder("references");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+        command.arg("reference").args(arguments).env("IRRADIA_CACHE_DIR", folder.join("none")).output().expect("starts")
+    };
+    let listed = run(&["--list"]);
+    assert!(listed.status.success() && String::from_utf8_lossy(&listed.stdout).contains("no reference in"));
+    assert!(run(&["--clear", "all"]).status.success());
+    let unknown = run(&["--clear", "0123abcd"]);
+    assert_eq!(unknown.status.code(), Some(1));
+    assert!(stderr(&unknown).contains("0123abcd") && stderr(&unknown).contains("--list"), "{}", stderr(&unknown));
+    let text_file = folder.join("a.exr");
+    fs::write(&text_file, "no image").expect("the test's own folder");
+    let merged = run(&["--merge", text(&text_file)]);
+    assert_eq!(merged.status.code(), Some(1));
+    assert!(stderr(&merged).contains("cannot be used as a reference"), "{}", stderr(&merged));
+    assert_eq!(names_in(&folder), ["a.exr"], "nothing was made");
+}
+
+#[test]
 fn names_that_do_not_exist_list_those_that_do() {
     assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--technique", "magic"], &["magic", "direct", "rsm"]);
     assert_wrong_usage(&["bench", "ring", "--technique", "rsm,magic"], &["magic", "direct", "rsm", "all"]);

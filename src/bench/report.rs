@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::statistics::Spread;
+pub use crate::metrics::ImageErrors;
 use crate::renderer::{DeviceReport, Slot};
 
 /// The schema that [`Report`] writes.
@@ -130,6 +131,12 @@ pub struct Run {
     pub error: Option<BTreeMap<String, ImageErrors>>,
     /// The same against full light transport.
     pub error_full: Option<BTreeMap<String, ImageErrors>>,
+    /// The reference of full light transport; null if there is none.
+    pub reference_full: Option<Reference>,
+    /// The relative noise (root mean square over mean) of the parts of `reference` that `error` is about.
+    pub noise: Option<BTreeMap<String, f64>>,
+    /// The same of `reference_full` and `error_full`.
+    pub noise_full: Option<BTreeMap<String, f64>>,
 }
 
 /// One pass of a run.
@@ -169,23 +176,6 @@ pub struct Reference {
     pub spp: u32,
     /// Scatterings between the light and the first visible surface; null if they are not limited.
     pub bounces: Option<u32>,
-}
-
-/// How far an image is from another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ImageErrors {
-    /// Root of the mean squared difference of linear radiance.
-    pub rmse: f64,
-    /// `rmse` over the mean of the reference.
-    pub rrmse: f64,
-    /// Mean of the squared difference over the squared reference, with ε = 1 % of the mean of the reference.
-    pub relmse: f64,
-    /// Peak signal-to-noise ratio of the tone-mapped images, dB.
-    pub psnr: f64,
-    /// Structural similarity of the tone-mapped images.
-    pub ssim: f64,
-    /// Mean FLIP.
-    pub flip: f64,
 }
 
 /// What could not be run, and why.
@@ -249,7 +239,7 @@ mod tests {
         has(&run["passes"][0], &["piece", "pass", "ms", "share", "skipped", "work"]);
         assert!(run["passes"][0]["skipped"].is_null());
         assert!(run["passes"].as_array().expect("a list").iter().any(|pass| pass["skipped"].is_string()));
-        for null in ["reference", "error", "error_full"] {
+        for null in ["reference", "error", "error_full", "reference_full", "noise", "noise_full"] {
             assert!(run[null].is_null(), "{null}");
         }
         has(&run["methods"], &["emission", "direct", "diffuse", "caustics", "specular"]);

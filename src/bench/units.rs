@@ -30,6 +30,20 @@ pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
+/// An error with three digits that count: `0.0123`, `12.3`, `1.23e-5`, `∞`.
+pub(crate) fn error(value: f64) -> String {
+    if value == 0.0 || value.is_infinite() {
+        return if value == 0.0 { "0" } else { "∞" }.to_owned();
+    }
+    // Rounded first, so that 0.99996 counts as 1.00.
+    let rounded = format!("{value:.2e}");
+    let exponent = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+    match exponent {
+        Some(exponent @ -3..=2) => format!("{value:.*}", (2 - exponent) as usize),
+        _ => rounded,
+    }
+}
+
 fn scaled(value: f64, step: f64, units: &[&str]) -> String {
     let (mut value, mut unit) = (value, 0);
     // 999.5 would print as 1000 of the smaller unit.
@@ -58,5 +72,12 @@ mod tests {
         assert_eq!(count(u64::MAX), "18.4 E");
         assert_eq!([0, 1023, 1024, 1536, 120 << 20].map(bytes), ["0 B", "1023 B", "1.0 KiB", "1.5 KiB", "120 MiB"]);
         assert_eq!(percent(0.1234), "12.3 %");
+    }
+
+    #[test]
+    fn errors_have_three_digits_at_any_scale() {
+        let errors = [0.0, 1.234e-5, 9.999e-4, 0.001_234, 0.012_34, 0.999_6, 1.5, 123.4, 12_345.6, f64::INFINITY];
+        let expected = ["0", "1.23e-5", "0.00100", "0.00123", "0.0123", "1.00", "1.50", "123", "1.23e4", "∞"];
+        assert_eq!(errors.map(error), expected);
     }
 }

@@ -9,7 +9,7 @@ use super::scene_data::SceneData;
 use super::view_layout::{Atlas, ViewShape, ViewSource};
 use crate::graph::hash_of;
 use crate::renderer::Settings;
-use crate::scene::{LightKind, Scene};
+use crate::scene::{LightKind, PlacedLight, Scene};
 use crate::shaders::types;
 
 const POINT: u32 = 0;
@@ -87,43 +87,20 @@ impl Builder<'_> {
     }
 
     fn add_punctual(&mut self, scene: &Scene) {
-        for placed in scene.placed_lights() {
-            if placed.intensity.iter().all(|&channel| channel <= 0.0) {
-                continue;
-            }
+        for placed in shining_lights(scene) {
             let axes = axes_of(scene.world_transform(placed.node).matrix3);
-            let position = placed.position - self.data.origin;
-            let source = self.source(position, self.settings.lights.resolution, placed.intensity);
-            let light = types::Light {
-                position_rs: position.as_vec3().to_array(),
-                kind: POINT,
-                direction: placed.direction.as_vec3().to_array(),
-                first_view: 0,
-                intensity: placed.intensity,
-                area_over_pi: 0.0,
-                spot_scale: 0.0,
-                spot_offset: 1.0,
-                range: placed.range.unwrap_or(0.0),
-                view_count: 0,
+            let source =
+                self.source(placed.position - self.data.origin, self.settings.lights.resolution, placed.intensity);
+            let light = punctual_light(&placed, self.data.origin);
+            let shapes = match placed.kind {
+                LightKind::Point => ViewShape::cube(source, axes),
+                LightKind::Spot { outer_angle, .. } if f64::from(outer_angle) > WIDEST_CONE => {
+                    ViewShape::cube(source, axes)
+                }
+                LightKind::Spot { outer_angle, .. } => ViewShape::cone(source, axes, f64::from(outer_angle).tan()),
+                LightKind::Directional => self.parallel(scene, source, axes),
             };
-            match placed.kind {
-                LightKind::Point => self.add(light, ViewShape::cube(source, axes)),
-                LightKind::Spot { inner_angle, outer_angle } => {
-                    let (scale, offset) = spot_falloff(f64::from(inner_angle), f64::from(outer_angle));
-                    let light = types::Light { kind: SPOT, spot_scale: scale, spot_offset: offset, ..light };
-                    let outer = f64::from(outer_angle);
-                    let shapes = if outer > WIDEST_CONE {
-                        ViewShape::cube(source, axes)
-                    } else {
-                        ViewShape::cone(source, axes, outer.tan())
-                    };
-                    self.add(light, shapes);
-                }
-                LightKind::Directional => {
-                    let shapes = self.parallel(scene, source, axes);
-                    self.add(types::Light { kind: DIRECTIONAL, ..light }, shapes);
-                }
-            }
+            self.add(light, shapes);
         }
     }
 
@@ -202,6 +179,36 @@ impl Builder<'_> {
             high = high.max(point);
         }
         if low.x > high.x { Vec::new() } else { ViewShape::parallel(source, axes, low, high) }
+    }
+}
+
+/// The placed punctual lights that are not black.
+pub(crate) fn shining_lights(scene: &Scene) -> Vec<PlacedLight> {
+    let mut lights = scene.placed_lights();
+    lights.retain(|placed| placed.intensity.iter().any(|&channel| channel > 0.0));
+    lights
+}
+
+/// A punctual light as shaders know it, in render space, without views.
+pub(crate) fn punctual_light(placed: &PlacedLight, origin: DVec3) -> types::Light {
+    let (kind, (spot_scale, spot_offset)) = match placed.kind {
+        LightKind::Point => (POINT, (0.0, 1.0)),
+        LightKind::Directional => (DIRECTIONAL, (0.0, 1.0)),
+        LightKind::Spot { inner_angle, outer_angle } => {
+            (SPOT, spot_falloff(f64::from(inner_angle), f64::from(outer_angle)))
+        }
+    };
+    types::Light {
+        position_rs: (placed.position - origin).as_vec3().to_array(),
+        kind,
+        direction: placed.direction.as_vec3().to_array(),
+        first_view: 0,
+        intensity: placed.intensity,
+        area_over_pi: 0.0,
+        spot_scale,
+        spot_offset,
+        range: placed.range.unwrap_or(0.0),
+        view_count: 0,
     }
 }
 

@@ -379,7 +379,7 @@ fn upload_materials(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene) 
     Ok((materials, buffer_with(device, "scene.material_textures", bytemuck::cast_slice(&uses), usage)?, sets))
 }
 
-fn material_record(material: &Material) -> types::Material {
+pub(crate) fn material_record(material: &Material) -> types::Material {
     types::Material {
         base_color: material.base_color,
         emissive: if material.unlit { [0.0; 3] } else { material.emissive },
@@ -400,6 +400,6 @@ fn material_record(material: &Material) -> types::Material {
 }
 
 /// The bits of glsl/lib/scene.glsl.
-fn texture_kinds(material: &Material) -> u32 {
+pub(crate) fn texture_kinds(material: &Material) -> u32 {
     (2..).zip(slots_of(material)).filter(|(_, texture)| texture.is_some()).map(|(bit, _)| 1 << bit).sum()
 }

@@ -58,24 +58,29 @@ impl TextureArrays {
 
     /// How `material` reads its textures.
     pub(super) fn uses_of(&self, material: &Material) -> types::MaterialTextures {
-        let identity = types::TextureUse { u_row: [1.0, 0.0, 0.0], v_row: [0.0, 1.0, 0.0], layer: 0, texcoord: 0 };
-        let read = |texture: Option<TextureRef>| {
-            texture.map_or(identity, |texture| types::TextureUse {
-                u_row: texture.transform[0],
-                v_row: texture.transform[1],
-                layer: self.layers[texture.texture.0].layer,
-                texcoord: texture.texcoord,
-            })
-        };
-        types::MaterialTextures {
-            base_color: read(material.base_color_texture),
-            metallic_roughness: read(material.metallic_roughness_texture),
-            normal: read(material.normal_texture),
-            emissive: read(material.emissive_texture),
-            specular: read(material.specular_texture),
-            specular_color: read(material.specular_color_texture),
-            transmission: read(material.transmission_texture),
-        }
+        texture_uses(material, |texture| self.layers[texture.texture.0].layer)
+    }
+}
+
+/// How `material` reads its textures, of which `layer` says where they lie.
+pub(crate) fn texture_uses(material: &Material, layer: impl Fn(TextureRef) -> u32) -> types::MaterialTextures {
+    let identity = types::TextureUse { u_row: [1.0, 0.0, 0.0], v_row: [0.0, 1.0, 0.0], layer: 0, texcoord: 0 };
+    let read = |texture: Option<TextureRef>| {
+        texture.map_or(identity, |texture| types::TextureUse {
+            u_row: texture.transform[0],
+            v_row: texture.transform[1],
+            layer: layer(texture),
+            texcoord: texture.texcoord,
+        })
+    };
+    types::MaterialTextures {
+        base_color: read(material.base_color_texture),
+        metallic_roughness: read(material.metallic_roughness_texture),
+        normal: read(material.normal_texture),
+        emissive: read(material.emissive_texture),
+        specular: read(material.specular_texture),
+        specular_color: read(material.specular_color_texture),
+        transmission: read(material.transmission_texture),
     }
 }
 
@@ -138,7 +143,7 @@ impl MaterialTextureSets {
 }
 
 /// A material's textures in the order in which shaders bind and number them (glsl/geometry/material_textures.glsl).
-pub(super) fn slots_of(material: &Material) -> [Option<TextureRef>; 7] {
+pub(crate) fn slots_of(material: &Material) -> [Option<TextureRef>; 7] {
     [
         material.base_color_texture,
         material.metallic_roughness_texture,

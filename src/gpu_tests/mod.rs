@@ -4,6 +4,10 @@
 //! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
 //! that outlives its renderer.
 
+mod bench_slots;
+mod bvh;
+mod bvh_closed;
+mod bvh_speed;
 mod direct;
 mod flux;
 mod gather;
@@ -15,6 +19,8 @@ mod light_share;
 mod memory;
 mod probe;
 mod raster;
+mod rays;
+mod reference_files;
 mod repeats;
 mod robustness;
 mod scenes;

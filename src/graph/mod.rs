@@ -34,7 +34,7 @@ use crate::vulkan::{Buffer, Image, ImageInfo, RasterState};
 use bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
 use demand::Version;
 pub use describe::GraphDescription;
-pub(crate) use execute::ReadBack;
+pub(crate) use execute::{Executed, ReadBack};
 pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList, PassBuilder};
 use pass::{Pass, Work};
 pub(crate) use store::Store;
@@ -216,6 +216,12 @@ impl<'s> Graph<'s> {
     /// Asks that the buffer be made.
     pub(crate) fn want_buffer<T>(&mut self, buffer: BufferRef<T>) {
         self.wanted.push(Version { place: (buffer.id, 0), key: self.resources[buffer.id].content[0].0 });
+    }
+
+    /// Says that a buffer which this frame leaves for a later one will be copied to the host then: memory that lacks the use would be
+    /// replaced, and what it holds lost.
+    pub(crate) fn keep_for_read_back<T>(&mut self, buffer: BufferRef<T>) {
+        self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
     }
 
     /// Asks that the image be made and its first mip level copied to the host; `image.mip(n)` copies level n. Returns its

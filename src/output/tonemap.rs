@@ -5,6 +5,8 @@
 //! of it. So both give the same picture for a scene ten times as bright, and `linear` does not: it shows radiance 1 as
 //! white. All map [0, ∞) to [0, 1], ascending, and 0 to 0.
 
+use rayon::prelude::*;
+
 use crate::renderer::{ColorImage, ToneMap};
 
 /// The luminance that `aces` exposes the scene's log-average to: a mid-grey of 18 %.
@@ -41,15 +43,21 @@ impl Adaptation {
     }
 }
 
-/// Display values of a whole image: `pixels.len()` of them, in the same order.
+/// Display values of a whole image, exposed for itself: `pixels.len()` of them, in the same order.
 pub fn tone_map(image: &ColorImage, map: ToneMap) -> Vec<[u8; 3]> {
     let adaptation = if map == ToneMap::Linear { Adaptation::default() } else { Adaptation::of(&image.pixels) };
+    tone_map_pixels(&image.pixels, map, adaptation).into_iter().map(|pixel| pixel.map(quantize)).collect()
+}
+
+/// sRGB-encoded display values in [0, 1], not yet rounded to levels, of pixels that are exposed as `adaptation` says: with the
+/// adaptation of another image, the two can be compared.
+pub fn tone_map_pixels(pixels: &[[f32; 3]], map: ToneMap, adaptation: Adaptation) -> Vec<[f32; 3]> {
     let shown = |pixel: &[f32; 3]| match map {
         ToneMap::Linear => linear(*pixel),
         ToneMap::Aces => aces(*pixel, adaptation),
         ToneMap::Drago => drago(*pixel, adaptation),
     };
-    image.pixels.iter().map(|pixel| shown(pixel).map(|value| quantize(srgb_encode(value)))).collect()
+    pixels.par_iter().map(|pixel| shown(pixel).map(srgb_encode)).collect()
 }
 
 /// Radiance as it is, clamped to [0, 1].
@@ -84,9 +92,13 @@ pub fn drago(radiance: [f32; 3], adaptation: Adaptation) -> [f32; 3] {
     radiance.map(|value| (adaptation.relative(sound(value)) * scale).min(1.0))
 }
 
+/// What red, green and blue contribute to luminance, linear Rec.709.
+pub const LUMINANCE_WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
 /// Luminance of linear Rec.709 radiance.
 pub fn luminance(radiance: &[f32; 3]) -> f32 {
-    0.2126 * radiance[0] + 0.7152 * radiance[1] + 0.0722 * radiance[2]
+    let [red, green, blue] = LUMINANCE_WEIGHTS;
+    red * radiance[0] + green * radiance[1] + blue * radiance[2]
 }
 
 /// exp of the mean of ln of the luminances above [`DARK_SHARE_OF_MEAN`] times their mean; 0 for a black image.

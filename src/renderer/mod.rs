@@ -22,6 +22,7 @@ mod context;
 pub(crate) mod declare;
 mod error;
 mod frame;
+mod path_frame;
 mod render;
 mod settings;
 mod slots;
@@ -31,8 +32,8 @@ pub use error::Error;
 pub use frame::{ColorImage, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
 pub use render::Renderer;
 pub use settings::{
-    CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, Preset, RsmSettings, Settings, SettingsError,
-    ShadowSettings, SpecularMethod, Technique,
+    CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, PathSettings, Preset, RsmSettings, Settings,
+    SettingsError, ShadowSettings, SpecularMethod, Technique,
 };
 pub use slots::Slot;
 

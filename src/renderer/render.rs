@@ -1,25 +1,28 @@
 //! The renderer: a scene and a request in, a frame out. Keeps on the device what still holds between frames.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::declare::declare;
+use super::path_frame::TracedPaths;
 use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Graph, GraphDescription, Store};
 use crate::scene::Scene;
-use crate::vulkan::VulkanError;
+use crate::vulkan::{Device, VulkanError};
 
 /// Makes frames with one set of settings on one device.
 ///
 /// What a scene, its lights and the camera leave unchanged from one frame to the next is not made again. Any scene may be
 /// rendered at any time; changing between scenes uploads them anew.
 pub struct Renderer {
-    settings: Settings,
+    pub(super) settings: Settings,
     data: Option<SceneData>,
     lights: LightSet,
     store: Store,
+    pub(super) paths: Option<TracedPaths>,
 }
 
 impl Renderer {
@@ -28,7 +31,8 @@ impl Renderer {
     /// # Errors
     /// If the device has no memory left.
     pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
-        Ok(Renderer { settings, data: None, lights: LightSet::default(), store: Store::new(context.shared_device())? })
+        let store = Store::new(context.shared_device())?;
+        Ok(Renderer { settings, data: None, lights: LightSet::default(), store, paths: None })
     }
 
     /// The settings of the frames to come.
@@ -45,6 +49,9 @@ impl Renderer {
     /// the device.
     pub fn invalidate(&mut self) {
         self.store.invalidate();
+        if let Some(paths) = &mut self.paths {
+            paths.invalidate();
+        }
     }
 
     /// Makes a frame of the scene as it is now.
@@ -53,8 +60,18 @@ impl Renderer {
     /// A frame without pixels or beyond the device's limits, exhausted memory, a lost device. The last two name the last
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
+        self.check_size(request)?;
+        if self.settings.methods.traces_paths() { self.render_paths(scene, request) } else { self.draw(scene, request) }
+    }
+
+    pub(super) fn device(&self) -> &Arc<Device> {
+        self.store.device()
+    }
+
+    /// A frame whose methods are all passes of one graph.
+    pub(super) fn draw(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         let start = Instant::now();
-        self.prepare(scene, request)?;
+        self.prepare(scene)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
         let mut graph = Graph::new(&mut self.store);
@@ -110,7 +127,8 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::render`], as far as uploading the scene goes.
     pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
-        self.prepare(scene, request)?;
+        self.check_size(request)?;
+        self.prepare(scene)?;
         let data = self.data.as_ref().expect("prepared above");
         let mut graph = Graph::new(&mut self.store);
         let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
@@ -128,18 +146,23 @@ impl Renderer {
         Ok(graph.describe())
     }
 
-    /// Brings the scene and its lights up to date on the device.
-    fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<(), Error> {
+    fn check_size(&self, request: &FrameRequest) -> Result<(), Error> {
         let [width, height] = request.size;
         if width == 0 || height == 0 {
             return Err(Error::EmptyFrame(width, height));
         }
-        let device = self.store.device().clone();
-        let limit = device.limits().max_image_dimension2_d;
+        let limit = self.store.device().limits().max_image_dimension2_d;
         if width.max(height) > limit {
             let (what, asked) = ("the frame".to_owned(), format!("{width}x{height} pixels"));
             return Err(VulkanError::TooLarge { what, asked, limit: format!("{limit} a side") }.into());
         }
+        Ok(())
+    }
+
+    /// Brings the scene and its lights up to date on the device.
+    fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+        let device = self.store.device().clone();
+        let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
         self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
@@ -161,6 +184,6 @@ fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {
     ColorImage { size, pixels }
 }
 
-fn black(size: [u32; 2]) -> ColorImage {
+pub(super) fn black(size: [u32; 2]) -> ColorImage {
     ColorImage { size, pixels: vec![[0.0; 3]; size[0] as usize * size[1] as usize] }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::slots::Slot;
+use crate::reference::PixelFilter;
 
 /// A setting that does not exist or does not take the value given. One sentence: what, where, what to do.
 #[derive(Debug, thiserror::Error)]
@@ -52,17 +53,20 @@ pub enum Technique {
     Direct,
     /// Reflective shadow maps (Dachsbacher & Stamminger 2005): VPLs gathered at every pixel, without visibility.
     Rsm,
+    /// Path tracing and light tracing: the reference, at as many samples as time allows.
+    Path,
 }
 
 impl Technique {
     /// All techniques.
-    pub const ALL: [Technique; 2] = [Technique::Direct, Technique::Rsm];
+    pub const ALL: [Technique; 3] = [Technique::Direct, Technique::Rsm, Technique::Path];
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Technique::Direct => "direct",
             Technique::Rsm => "rsm",
+            Technique::Path => "path",
         }
     }
 
@@ -88,6 +92,12 @@ impl Technique {
         match self {
             Technique::Direct => none,
             Technique::Rsm => Methods { diffuse: DiffuseMethod::Rsm, ..none },
+            Technique::Path => Methods {
+                direct: DirectMethod::Traced,
+                diffuse: DiffuseMethod::Path,
+                caustics: CausticsMethod::Path,
+                specular: SpecularMethod::Path,
+            },
         }
     }
 }
@@ -157,6 +167,8 @@ methods! {
         None = "none",
         /// Filtered, normal-offset shadow maps.
         ShadowMap = "shadow-map",
+        /// Rays to the lights.
+        Traced = "traced",
     }
 }
 methods! {
@@ -166,6 +178,8 @@ methods! {
         None = "none",
         /// Reflective shadow maps: VPLs gathered at every pixel.
         Rsm = "rsm",
+        /// Path tracing.
+        Path = "path",
     }
 }
 methods! {
@@ -173,6 +187,8 @@ methods! {
     CausticsMethod {
         /// Not at all.
         None = "none",
+        /// Path tracing and light tracing.
+        Path = "path",
     }
 }
 methods! {
@@ -180,6 +196,8 @@ methods! {
     SpecularMethod {
         /// Not at all.
         None = "none",
+        /// Path tracing.
+        Path = "path",
     }
 }
 
@@ -206,6 +224,18 @@ impl Methods {
             Slot::Caustics => self.caustics.name(),
             Slot::Specular => self.specular.name(),
         }
+    }
+
+    /// Whether something fills `slot`: a method, or for emission the surfaces themselves.
+    pub fn fills(&self, slot: Slot) -> bool {
+        self.name_of(slot) != "none"
+    }
+
+    /// Whether paths are traced for some slot besides `direct`.
+    pub fn traces_paths(&self) -> bool {
+        self.diffuse == DiffuseMethod::Path
+            || self.caustics == CausticsMethod::Path
+            || self.specular == SpecularMethod::Path
     }
 
     /// Chooses the method of one slot by name.
@@ -263,6 +293,20 @@ pub struct RsmSettings {
     pub vpls: u32,
 }
 
+/// Options of the methods that trace paths.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathSettings {
+    /// Samples a pixel of one frame; 1 to 1048576. Cost: linear. Noise: its inverse square root.
+    pub spp: u32,
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone; null: no limit.
+    pub bounces: Option<u32>,
+    /// Where in a pixel light is sampled: `center` or `box`.
+    pub filter: PixelFilter,
+    /// Which of the equally good sequences of samples is taken.
+    pub seed: u32,
+}
+
 /// Everything that decides how a frame is made, apart from the scene, the view and the size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -279,6 +323,8 @@ pub struct Settings {
     pub shadow: ShadowSettings,
     /// Options of the `rsm` method.
     pub rsm: RsmSettings,
+    /// Options of the `path` methods.
+    pub path: PathSettings,
 }
 
 impl Settings {
@@ -292,6 +338,7 @@ impl Settings {
             lights,
             shadow: ShadowSettings { filter_radius: 1, normal_offset: 0.05 },
             rsm: RsmSettings { vpls: 256 },
+            path: PathSettings { spp: 64, bounces: None, filter: PixelFilter::Center, seed: 0 },
         };
         let lights = default.lights.clone();
         match preset {
@@ -299,6 +346,7 @@ impl Settings {
             Preset::Draft => Settings {
                 lights: LightSettings { resolution: 256, emitter_samples: 4, emitter_resolution: 64, sky_samples: 8 },
                 rsm: RsmSettings { vpls: 64 },
+                path: PathSettings { spp: 16, ..default.path },
                 ..default
             },
             Preset::High => Settings {
@@ -310,6 +358,7 @@ impl Settings {
                 },
                 shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
                 rsm: RsmSettings { vpls: 1024 },
+                path: PathSettings { spp: 256, ..default.path },
                 ..default
             },
             // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel.
@@ -319,6 +368,31 @@ impl Settings {
                 ..default
             },
         }
+    }
+
+    /// Scatterings between the light and the first visible surface that the methods account for, at most; `None`: no limit. What
+    /// a reference of equal light paths is limited to.
+    pub fn bounces(&self) -> Option<u32> {
+        let Methods { direct: _, diffuse, caustics, specular } = self.methods;
+        let diffuse = match diffuse {
+            DiffuseMethod::None => Some(0),
+            DiffuseMethod::Rsm => Some(1),
+            DiffuseMethod::Path => self.path.bounces,
+        };
+        let caustics = match caustics {
+            CausticsMethod::None => Some(0),
+            CausticsMethod::Path => self.path.bounces,
+        };
+        let specular = match specular {
+            SpecularMethod::None => Some(0),
+            SpecularMethod::Path => self.path.bounces,
+        };
+        [diffuse, caustics, specular].into_iter().try_fold(0, |most, bounces| Some(bounces?.max(most)))
+    }
+
+    /// Where in a pixel the methods sample light: at its centre, unless paths are traced otherwise.
+    pub fn filter(&self) -> PixelFilter {
+        if self.methods.traces_paths() { self.path.filter } else { PixelFilter::Center }
     }
 
     /// All settings that `set` takes, as `piece.key`.
@@ -378,6 +452,7 @@ impl Settings {
                 Err("it takes 0 to 16".to_owned())
             }
             "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            "path.spp" => within(self.path.spp, 1, 1 << 20),
             _ => Ok(()),
         }
     }
@@ -397,6 +472,23 @@ mod tests {
             settings.set(&key, &value).expect("its own value is within its range");
         }
         assert_eq!(settings, before);
+    }
+
+    #[test]
+    fn methods_say_what_they_account_for() {
+        let of = |technique| Settings::new(technique, Preset::Default);
+        assert_eq!((of(Technique::Direct).bounces(), of(Technique::Rsm).bounces()), (Some(0), Some(1)));
+        let mut path = of(Technique::Path);
+        assert_eq!(path.bounces(), None);
+        path.path.bounces = Some(3);
+        assert_eq!((path.bounces(), path.filter()), (Some(3), PixelFilter::Center));
+        path.path.filter = PixelFilter::Box;
+        assert_eq!(path.filter(), PixelFilter::Box);
+        let rsm = Settings { path: path.path, ..of(Technique::Rsm) };
+        assert_eq!((rsm.bounces(), rsm.filter()), (Some(1), PixelFilter::Center));
+        let filled = |technique| Slot::ALL.into_iter().filter(move |slot| of(technique).methods.fills(*slot));
+        assert!(filled(Technique::Direct).eq([Slot::Emission, Slot::Direct]));
+        assert!(filled(Technique::Rsm).eq([Slot::Emission, Slot::Direct, Slot::Diffuse]));
     }
 
     #[test]

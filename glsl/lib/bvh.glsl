@@ -1,0 +1,172 @@
+// Rays against the scene's triangles: eight-wide bounding volume hierarchy with quantised boxes (Ylitie, Karras & Laine 2017),
+// watertight triangle test (Woop, Benthin & Wald 2013). The host's side, with the layout, is src/scene/bvh.rs.
+//
+// The including shader declares `usamplerBuffer bvh_nodes` and `samplerBuffer bvh_triangles`. If it defines BVH_ACCEPTS_HITS and
+// before the include a function `bool accepts_hit(uint triangle, vec2 barycentric)`, hits of flagged triangles must pass that.
+#ifndef LIB_BVH
+#define LIB_BVH
+
+const uint NO_TRIANGLE = 0xffffffffu;
+
+// A group of children waits at each level at most; the host builds no deeper tree.
+const int BVH_STACK_SIZE = 32;
+
+// Bounds the rounding of a box's distances, as shares of the distance and of the way to the node's corner.
+const float BVH_DISTANCE_SLACK = 1.000001;
+const float BVH_CORNER_SLACK = 4e-7;
+
+struct Hit {
+    float distance;    // in lengths of the direction; the ray's end if nothing was hit
+    vec2 barycentric;  // weights of corners 1 and 2
+    uint triangle;     // index in the host's list, NO_TRIANGLE if none
+};
+
+// What all tests of one ray share.
+struct PreparedRay {
+    vec3 origin;
+    vec3 inverse_direction;
+    bvec3 backwards;
+    uint octant;  // bits 2, 1, 0: x, y, z do not decrease
+    // Rows of the shear that turns the direction into the third axis, of length 1.
+    vec3 shear_x;
+    vec3 shear_y;
+    vec3 shear_z;
+};
+
+PreparedRay prepare_ray(vec3 origin, vec3 direction) {
+    vec3 size = abs(direction);
+    float largest = max(size.x, max(size.y, size.z));
+    // An axis along which the ray stands still gets a slope that moves it less than a rounding error.
+    float least = 1e-12 * largest;
+    vec3 moving = mix(direction, vec3(least), lessThan(size, vec3(least)));
+
+    PreparedRay ray;
+    ray.origin = origin;
+    ray.inverse_direction = 1.0 / moving;
+    ray.backwards = lessThan(moving, vec3(0.0));
+    ray.octant = (ray.backwards.x ? 0u : 4u) | (ray.backwards.y ? 0u : 2u) | (ray.backwards.z ? 0u : 1u);
+    vec3 inverse = ray.inverse_direction;
+    if (size.x >= largest) {
+        ray.shear_x = vec3(-direction.y * inverse.x, 1.0, 0.0);
+        ray.shear_y = vec3(-direction.z * inverse.x, 0.0, 1.0);
+        ray.shear_z = vec3(inverse.x, 0.0, 0.0);
+    } else if (size.y >= largest) {
+        ray.shear_x = vec3(0.0, -direction.z * inverse.y, 1.0);
+        ray.shear_y = vec3(1.0, -direction.x * inverse.y, 0.0);
+        ray.shear_z = vec3(0.0, inverse.y, 0.0);
+    } else {
+        ray.shear_x = vec3(1.0, 0.0, -direction.x * inverse.z);
+        ray.shear_y = vec3(0.0, 1.0, -direction.y * inverse.z);
+        ray.shear_z = vec3(0.0, 0.0, inverse.z);
+    }
+    return ray;
+}
+
+// Whether the ray meets the triangle at `place` of the tree's order nearer than `hit`, which it then replaces.
+//
+// All triangles at a corner shear it to the same point, and the signs of `weights` are exact or 0 there (products round
+// monotonically, so none may be fused): of the triangles around an edge or a corner a ray cannot miss all.
+bool meets_triangle(uint place, PreparedRay ray, inout Hit hit) {
+    int texel = 3 * int(place);
+    vec4 corner0 = texelFetch(bvh_triangles, texel);
+    vec4 corner1 = texelFetch(bvh_triangles, texel + 1);
+    vec4 corner2 = texelFetch(bvh_triangles, texel + 2);
+    vec3 a = corner0.xyz - ray.origin;
+    vec3 b = corner1.xyz - ray.origin;
+    vec3 c = corner2.xyz - ray.origin;
+    precise vec3 x = vec3(dot(a, ray.shear_x), dot(b, ray.shear_x), dot(c, ray.shear_x));
+    precise vec3 y = vec3(dot(a, ray.shear_y), dot(b, ray.shear_y), dot(c, ray.shear_y));
+    precise vec3 weights = x.zxy * y.yzx - y.zxy * x.yzx;
+    float least = min(weights.x, min(weights.y, weights.z));
+    float greatest = max(weights.x, max(weights.y, weights.z));
+    vec3 shares = weights / (weights.x + weights.y + weights.z);
+    float distance = dot(shares, vec3(dot(a, ray.shear_z), dot(b, ray.shear_z), dot(c, ray.shear_z)));
+    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > 0.0 && distance < hit.distance;
+#ifdef BVH_ACCEPTS_HITS
+    if (meets && (floatBitsToUint(corner1.w) & 1u) != 0u) {
+        meets = accepts_hit(floatBitsToUint(corner0.w), shares.yz);
+    }
+#endif
+    if (meets) {
+        hit = Hit(distance, shares.yz, floatBitsToUint(corner0.w));
+    }
+    return meets;
+}
+
+// Four children of a node: a bit for each that the ray may meet nearer than `reach`. Leaves set one bit for each triangle among
+// bits 0 to 23; inner children one of bits 24 to 31, the sooner it comes along the ray the higher.
+uint met_children(uint meta, uvec3 low, uvec3 high, PreparedRay ray, vec3 scale, vec3 near_corner, vec3 far_corner, float reach) {
+    uint inner = ((meta & (meta << 1)) & 0x10101010u) >> 4;
+    uint places = (meta ^ (ray.octant * inner)) & 0x1f1f1f1fu;
+    uint bits = (meta >> 5) & 0x07070707u;
+    uvec3 entry = mix(low, high, ray.backwards);
+    uvec3 leave = mix(high, low, ray.backwards);
+    vec3 far_scale = scale * BVH_DISTANCE_SLACK;
+    uint met = 0u;
+    for (int shift = 0; shift < 32; shift += 8) {
+        vec3 enters = vec3(ivec3((entry >> shift) & 255u)) * scale + near_corner;
+        vec3 leaves = vec3(ivec3((leave >> shift) & 255u)) * far_scale + far_corner;
+        float first = max(max(enters.x, enters.y), max(enters.z, 0.0));
+        float last = min(min(leaves.x, leaves.y), min(leaves.z, reach));
+        met |= first <= last ? ((bits >> shift) & 255u) << ((places >> shift) & 255u) : 0u;
+    }
+    return met;
+}
+
+Hit traverse(vec3 origin, vec3 direction, float t_max, bool any) {
+    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
+    PreparedRay ray = prepare_ray(origin, direction);
+    uvec2 stack[BVH_STACK_SIZE];
+    int waiting = 0;
+    // Children of one node: where they start; which are still to visit (bits 24 to 31), which slots hold nodes (bits 0 to 7).
+    uvec2 nodes = uvec2(0u, 0x80000000u);
+    while (nodes.y > 0x00ffffffu) {
+        uint bit = uint(findMSB(nodes.y));
+        uint slots = nodes.y;
+        nodes.y ^= 1u << bit;
+        if (nodes.y > 0x00ffffffu) {
+            stack[waiting++] = nodes;
+        }
+        uint slot = (bit - 24u) ^ ray.octant;
+        uint node = nodes.x + uint(bitCount(slots & ~(0xffffffffu << slot)));
+
+        int texel = 5 * int(node);
+        uvec4 head = texelFetch(bvh_nodes, texel);
+        uvec4 links = texelFetch(bvh_nodes, texel + 1);
+        uvec4 x = texelFetch(bvh_nodes, texel + 2);
+        uvec4 y = texelFetch(bvh_nodes, texel + 3);
+        uvec4 z = texelFetch(bvh_nodes, texel + 4);
+        vec3 scale = uintBitsToFloat((uvec3(head.w, head.w >> 8, head.w >> 16) & 255u) << 23) * ray.inverse_direction;
+        vec3 corner = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse_direction;
+        vec3 near_corner = corner - abs(corner) * BVH_CORNER_SLACK;
+        vec3 far_corner = corner * BVH_DISTANCE_SLACK + abs(corner) * BVH_CORNER_SLACK;
+        uint met = met_children(links.z, uvec3(x.x, y.x, z.x), uvec3(x.z, y.z, z.z), ray, scale, near_corner, far_corner, hit.distance)
+                   | met_children(links.w, uvec3(x.y, y.y, z.y), uvec3(x.w, y.w, z.w), ray, scale, near_corner, far_corner, hit.distance);
+        nodes = uvec2(links.x, (met & 0xff000000u) | (head.w >> 24));
+
+        uint triangles = met & 0x00ffffffu;
+        while (triangles != 0u) {
+            uint place = uint(findMSB(triangles));
+            triangles ^= 1u << place;
+            if (meets_triangle(links.y + place, ray, hit) && any) {
+                return hit;
+            }
+        }
+        if (nodes.y <= 0x00ffffffu && waiting > 0) {
+            nodes = stack[--waiting];
+        }
+    }
+    return hit;
+}
+
+// The nearest triangle that the ray meets within `t_max` lengths of its direction, from either side.
+Hit closest_hit(vec3 origin, vec3 direction, float t_max) {
+    return traverse(origin, direction, t_max, false);
+}
+
+// Whether any triangle lies on the ray nearer than `t_max` lengths of its direction.
+bool is_occluded(vec3 origin, vec3 direction, float t_max) {
+    return traverse(origin, direction, t_max, true).triangle != NO_TRIANGLE;
+}
+
+#endif

@@ -1,0 +1,128 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/microfacet.glsl"
+#include "lib/sobol.glsl"
+#include "lib/texels.glsl"
+#include "path/emitters.glsl"
+#include "path/queue.glsl"
+#include "path/state.glsl"
+
+// Starts one path from a light: a light by its share of the power, a point and a direction of it. It carries the flux
+//
+//   Φ = I(ω)/(P p(ω))   point, spot      E⊥·πR²/P   directional      π·L/(P/A) a side   emissive triangle        [W]
+//
+// so that the flux of all paths is N times what all lights send out. Lights with a range send none: their light ends where no
+// path would. Only what falls within R of the scene's middle of a directional light counts.
+
+layout(local_size_x = 64) in;
+
+// 1: the radiance of some emissive triangles is textured.
+layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer sobol;
+layout(set = 0, binding = 1) uniform usamplerBuffer emitters;
+layout(set = 0, binding = 2) uniform usamplerBuffer lights;
+layout(set = 0, binding = 3) uniform usamplerBuffer triangles;
+layout(set = 0, binding = 4) uniform usamplerBuffer materials;
+layout(set = 0, binding = 5) uniform samplerBuffer corner_texcoords;
+layout(set = 0, binding = 6) uniform usamplerBuffer material_textures;
+layout(set = 0, binding = 7) uniform usamplerBuffer texture_table;
+layout(set = 0, binding = 8) uniform samplerBuffer texels;
+layout(set = 0, binding = 9) writeonly buffer RayBlock { vec4 path_rays[]; };
+layout(set = 0, binding = 10) writeonly buffer StateBlock { vec4 path_states[]; };
+layout(set = 0, binding = 11) writeonly buffer FlagBlock { uint path_flags[]; };
+layout(set = 0, binding = 12) writeonly buffer SeedBlock { uvec2 path_seeds[]; };
+layout(set = 0, binding = 13) buffer QueueBlock { uint active_paths[]; };
+layout(set = 0, binding = 14) uniform usamplerBuffer bvh_nodes;
+
+#include "lib/ray_offset.glsl"
+
+layout(push_constant, scalar) uniform Push {
+    uint emitter_count;
+    uint first_path;     // of this wave in its sample
+    uint path_count;     // in this wave
+    uint seed;           // of the sample
+    float light_paths;   // N: light paths a sample
+    float radius;        // R
+} push;
+
+struct Start {
+    vec3 origin;
+    vec3 direction;
+    vec3 flux;
+    float cosine;        // at the light; −1: a beam that does not spread
+    float ratio;         // D of mis.glsl at the first vertex, up to d²/|cos| (|cos| for a beam)
+    float next_density;  // of next-event estimation on the light, 1/m²; none: beyond any
+};
+
+Start start_at_punctual(Emitter emitter, vec4 random) {
+    Light light = load_light(lights, emitter.number);
+    Frame frame = frame_around(light.direction);
+    if (light.kind == LIGHT_DIRECTIONAL) {
+        float radius = push.radius * sqrt(random.x);
+        float azimuth = 2.0 * PI * random.y;
+        vec3 across = radius * (cos(azimuth) * frame.tangent + sin(azimuth) * frame.bitangent);
+        float area = PI * push.radius * push.radius;
+        return Start(
+            across - 1.001 * push.radius * light.direction, light.direction, light.intensity * (area / emitter.probability), -1.0,
+            area / push.light_paths, 1e38);
+    }
+    // Uniform in the cone, or over the sphere.
+    float depth = light.kind == LIGHT_SPOT ? 1.0 + light.spot_offset / light.spot_scale : 2.0;
+    float cosine = 1.0 - depth * random.x;
+    float azimuth = 2.0 * PI * random.y;
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    vec3 direction = to_world(frame, vec3(sine * cos(azimuth), sine * sin(azimuth), cosine));
+    float density = 0.5 * INVERSE_PI / max(depth, 1e-9);
+    vec3 flux = light.range > 0.0 ? vec3(0.0) : radiant_intensity(light, direction) / (density * emitter.probability);
+    return Start(light.position_rs, direction, flux, 1.0, 1.0 / (push.light_paths * density), 1e38);
+}
+
+Start start_at_triangle(Emitter emitter, vec2 place_random, vec4 random) {
+    Triangle triangle = load_triangle(triangles, emitter.number);
+    Material material = load_material(materials, triangle.material);
+    bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    vec2 place = point_of_triangle(place_random);
+    vec3 normal = front_normal(triangle);
+    normal = both_sides && random.z < 0.5 ? -normal : normal;
+    vec3 local = sample_cosine_hemisphere(random.xy);
+    vec3 radiance = material.emissive;
+    if (EMISSIVE_TEXTURES != 0u && (material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
+        vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
+                    + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
+                    + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
+        TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
+        vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
+        radiance *= sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0)).rgb;
+    }
+    float sides = both_sides ? 2.0 : 1.0;
+    vec3 position = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2;
+    float cosine = max(local.z, 1e-6);
+    return Start(
+        offset_ray_origin(position, normal), to_world(frame_around(normal), local), radiance * (PI * sides / triangle.light_density),
+        cosine, sides * PI / (push.light_paths * cosine), triangle.light_density);
+}
+
+void main() {
+    uint path = gl_GlobalInvocationID.x;
+    bool wanted = path < push.path_count;
+    if (wanted) {
+        uint index = push.first_path + path;
+        vec4 random = sobol_sample(sobol, index, seed_of(push.seed, STREAM_CAMERA));
+        vec4 more = sobol_sample(sobol, index, seed_of(push.seed, STREAM_EMISSION));
+        Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
+        Start start;
+        if (emitter.is_triangle) {
+            start = start_at_triangle(emitter, random.yz, more);
+        } else {
+            start = start_at_punctual(emitter, more);
+        }
+        wanted = max3(start.flux) > 0.0;
+        path_rays[2u * path] = vec4(start.origin, start.cosine);
+        path_rays[2u * path + 1u] = vec4(start.direction, start.next_density);
+        path_states[path] = vec4(start.flux, start.ratio);
+        path_flags[path] = 0u;
+        path_seeds[path] = uvec2(push.seed, index);
+    }
+    APPEND_TO_QUEUE(active_paths, path, wanted)
+}

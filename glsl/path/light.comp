@@ -1,0 +1,171 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/sobol.glsl"
+#include "lib/texels.glsl"
+#include "path/emitters.glsl"
+#include "path/queue.glsl"
+#include "path/state.glsl"
+#include "path/vertex.glsl"
+
+// Next-event estimation at one vertex: one point of one light, and what it would add if nothing is in between,
+//
+//   β · f(l, v) · L·(n_y·−l)⁺ / p_next        p_next = P(triangle)/A · d²/(n_y·−l), or P(light) with E⊥ in place of L
+//
+// for the diffuse and the specular lobe apart, each weighted against the other ways of finding the same path (mis.glsl). The ray to the
+// light is left for `connect`.
+
+layout(local_size_x = 64) in;
+
+// 1: lights send out paths of their own.
+layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
+// 1: the radiance of some emissive triangles is textured.
+layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
+layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
+layout(set = 0, binding = 2) uniform samplerBuffer path_states;
+layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
+layout(set = 0, binding = 4) uniform usamplerBuffer path_seeds;
+layout(set = 0, binding = 5) uniform usamplerBuffer vertices;
+layout(set = 0, binding = 6) uniform usamplerBuffer sobol;
+layout(set = 0, binding = 7) uniform usamplerBuffer emitters;
+layout(set = 0, binding = 8) uniform usamplerBuffer lights;
+layout(set = 0, binding = 9) uniform usamplerBuffer triangles;
+layout(set = 0, binding = 10) uniform usamplerBuffer materials;
+layout(set = 0, binding = 11) uniform samplerBuffer corner_texcoords;
+layout(set = 0, binding = 12) uniform usamplerBuffer material_textures;
+layout(set = 0, binding = 13) uniform usamplerBuffer texture_table;
+layout(set = 0, binding = 14) uniform samplerBuffer texels;
+layout(set = 0, binding = 15) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
+layout(set = 0, binding = 16) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
+layout(set = 0, binding = 17) buffer QueueBlock { uint connections[]; };
+
+layout(set = 0, binding = 18) uniform usamplerBuffer bvh_nodes;
+
+#include "lib/ray_offset.glsl"
+
+layout(push_constant, scalar) uniform Push {
+    uint emitter_count;
+    uint depth;           // vertices before this one
+    float light_paths;    // N of mis.glsl
+    float disc_area;      // m², across which light paths of a directional light start
+} push;
+
+struct LightSample {
+    vec3 to_light;
+    float distance;         // up to which nothing may be in between
+    vec3 irradiance;        // across the beam over the probability (punctual) or radiance over the density (triangle)
+    float next;             // density at the vertex, 1/sr; 0: no other strategy but light paths finds it
+    float emission_density; // of light paths that leave the light here, at the vertex across the beam: 1/m²
+};
+
+LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
+    Light light = load_light(lights, emitter.number);
+    Illumination illumination = illuminate(light, position_rs);
+    bool directional = light.kind == LIGHT_DIRECTIONAL;
+    float distance = directional ? 3e38 : length(light.position_rs - position_rs);
+    float cone = light.kind == LIGHT_SPOT ? 0.5 * (1.0 + light.spot_offset / light.spot_scale) : 1.0;
+    // Light paths leave out lights with a range (particle/emit.comp).
+    float emission = light.range > 0.0 ? 0.0 : directional ? 1.0 / push.disc_area : 0.25 * INVERSE_PI / (max(cone, 1e-9) * max(distance * distance, 1e-30));
+    return LightSample(illumination.to_light, distance, illumination.irradiance / emitter.probability, 0.0, emission);
+}
+
+vec3 emissive_texel(Triangle triangle, vec2 place) {
+    vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
+                + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
+                + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
+    TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
+    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
+    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0)).rgb;
+}
+
+LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
+    Triangle triangle = load_triangle(triangles, emitter.number);
+    Material material = load_material(materials, triangle.material);
+    vec2 place = point_of_triangle(random);
+    vec3 way = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2 - position_rs;
+    float distance2 = max(dot(way, way), 1e-30);
+    vec3 to_light = way * inversesqrt(distance2);
+    float cosine = -dot(front_normal(triangle), to_light);
+    bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
+    float next = triangle.light_density * distance2 / max(cosine, 1e-9);
+    vec3 radiance = material.emissive;
+    if (EMISSIVE_TEXTURES != 0u && (material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
+        radiance *= emissive_texel(triangle, place);
+    }
+    return LightSample(
+        to_light, sqrt(distance2) * 0.9999, cosine > 0.0 ? radiance / next : vec3(0.0), next,
+        cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);
+}
+
+// The balance heuristic for one lobe. `reverse`: density of the light's path from here to the vertex before, 1/sr.
+float weight_of_next(LightSample light, float density, float light_ratio, float reverse) {
+    float hit = light.next > 0.0 ? density / light.next : 0.0;
+    return 1.0 / (1.0 + hit + light_ratio * reverse);
+}
+
+bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2]) {
+    Vertex vertex = load_vertex(vertices, path);
+    vec3 to_viewer = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
+    uvec2 seed = texelFetch(path_seeds, int(path)).xy;
+    vec4 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_LIGHT + 2u * push.depth));
+    Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
+    LightSample light;
+    if (emitter.is_triangle) {
+        light = sample_triangle(emitter, vertex.position_rs, random.yz);
+    } else {
+        light = sample_punctual(emitter, vertex.position_rs);
+    }
+    float side = dot(vertex.geometric_normal, light.to_light);
+    Frame frame = frame_around(vertex.normal);
+    vec3 direction = to_local(frame, light.to_light);
+    // The triangle and the shading normal must agree on which side the light is.
+    if (max3(light.irradiance) <= 0.0 || side * direction.z <= 0.0 || (TRANSMISSIVE == 0u && side <= 0.0)) {
+        return false;
+    }
+    vec3 viewer = local_viewer(frame, to_viewer);
+    vec3 shares = lobe_shares(vertex.matter, viewer.z);
+    LobeValue diffuse = diffuse_lobe(vertex.matter, viewer, direction, shares.x);
+    LobeValue specular = specular_lobe(vertex.matter, viewer, direction, shares);
+    float light_ratio = 0.0;
+    vec2 reverse = vec2(0.0);
+    if (LIGHT_PATHS != 0u && push.depth > 0u) {
+        light_ratio = vertex.ratio * vertex.reverse_geometry * push.light_paths * light.emission_density * abs(side);
+        reverse.x = lobe_density(vertex.matter, LOBE_DIFFUSE, direction, viewer);
+        reverse.y = lobe_density(vertex.matter, LOBE_SPECULAR, direction, viewer);
+    }
+    vec3 arriving = texelFetch(path_states, int(path)).rgb * light.irradiance;
+    if (SPECULAR_LOBES != 0u) {
+        uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+        arriving *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
+    }
+    light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, light_ratio, reverse.x);
+    light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, light_ratio, reverse.y);
+    vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
+    connection[0] = vec4(origin, light.distance);
+    connection[1] = vec4(light.to_light, 0.0);
+    return max3(light_of_lobes[0]) + max3(light_of_lobes[1]) > 0.0;
+}
+
+void main() {
+    uint path = queued_path(alive_paths);
+    vec4 connection[2];
+    vec3 light_of_lobes[2];
+    bool wanted = path != NO_PATH && sample_light(path, connection, light_of_lobes);
+    if (wanted) {
+        uint flags = texelFetch(path_flags, int(path)).x;
+        bool split = push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u;
+        uint slot = push.depth == 0u ? SLOT_DIRECT : split ? SLOT_DIFFUSE : flags & FLAG_SLOT_MASK;
+        connection_rays[2u * path] = connection[0];
+        connection_rays[2u * path + 1u] = vec4(connection[1].xyz, uintBitsToFloat(slot));
+        if (SPECULAR_LOBES == 0u) {
+            connection_light[path] = vec4(light_of_lobes[0], 0.0);
+        } else {
+            connection_light[2u * path] = vec4(split ? light_of_lobes[0] : light_of_lobes[0] + light_of_lobes[1], 0.0);
+            // What goes to the slot `caustics` besides.
+            connection_light[2u * path + 1u] = vec4(split ? light_of_lobes[1] : vec3(0.0), 0.0);
+        }
+    }
+    APPEND_TO_QUEUE(connections, path, wanted)
+}

@@ -1,0 +1,36 @@
+// How the ways of finding a path are weighted: the balance heuristic (Veach & Guibas 1995) over
+//
+//   hit    the camera's path runs into the emitter z_{k+1}                p_hit     (1/sr at z_k)
+//   next   the light is sampled from z_k (next-event estimation)          p_next    (1/sr at z_k)
+//   light  a light's path reaches z_1 and is connected to the camera      X·p_next  (only where z_1 scatters diffusely, k ≥ 2)
+//
+// with the camera's path z_1 … z_k. All densities are those of labelled paths (lobes.glsl), without Russian roulette. X is carried
+// along as the ratio C of the densities of what both walks made so far,
+//
+//   C_k = Π_{i=2}^{k−1} p(z_i → z_{i−1}) / (c(z_1) Π_{i=1}^{k−1} p(z_i → z_{i+1}))        p in 1/m² at the vertex that it leads to
+//   X = C_k · p(z_k → z_{k−1}) · N p(light → z_k)
+//
+// c(z_1): camera rays per m² of surface and sample of every pixel; N: light paths per sample of every pixel. A light's path y_1 … y_k
+// carries the inverse D in the same way, with the factor 1 + p_hit/p_next at y_1 and p(y_j → y_{j−1}) at the later ones.
+#ifndef PATH_MIS
+#define PATH_MIS
+
+// Where camera rays go: one ray for every sample of a pixel.
+struct CameraRays {
+    float density;      // perspective: pixels per sr on the axis; orthographic: pixels per m² across the view
+    float orthographic; // 1 or 0
+};
+
+// c(z): camera rays per m² of a surface at `position`, for one sample of every pixel.
+float camera_rays_per_area(CameraRays rays, vec3 camera_position, vec3 forward, vec3 position, vec3 geometric_normal) {
+    if (rays.orthographic != 0.0) {
+        return rays.density * abs(dot(geometric_normal, forward));
+    }
+    vec3 way = position - camera_position;
+    float distance2 = max(dot(way, way), 1e-30);
+    vec3 direction = way * inversesqrt(distance2);
+    float axial = max(dot(direction, forward), 1e-6);
+    return rays.density * abs(dot(geometric_normal, direction)) / (distance2 * axial * axial * axial);
+}
+
+#endif

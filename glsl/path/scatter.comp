@@ -1,0 +1,110 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/sobol.glsl"
+#include "path/queue.glsl"
+#include "path/state.glsl"
+#include "path/vertex.glsl"
+
+// Sends one path on: a lobe by its share, a direction by the lobe's density, β ← β · f·|cos|/p. Russian roulette ends paths that carry
+// little; what survives carries more for it. A light's path takes the adjoint of a shading normal (Veach 1997, section 5.3),
+// f*·|cos| = f·|cos| · |l·n_s||v·n_g| / (|l·n_g||v·n_s|), and no factor 1/η² where it is refracted.
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 2) const uint FROM_LIGHT = 0u;
+layout(constant_id = 3) const uint LIGHT_PATHS = 1u;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
+layout(set = 0, binding = 1) uniform usamplerBuffer path_seeds;
+layout(set = 0, binding = 2) uniform usamplerBuffer vertices;
+layout(set = 0, binding = 3) uniform usamplerBuffer sobol;
+layout(set = 0, binding = 4) buffer RayBlock { vec4 path_rays[]; };
+layout(set = 0, binding = 5) buffer StateBlock { vec4 path_states[]; };
+layout(set = 0, binding = 6) buffer FlagBlock { uint path_flags[]; };
+layout(set = 0, binding = 7) buffer QueueBlock { uint active_paths[]; };
+
+layout(set = 0, binding = 8) uniform usamplerBuffer bvh_nodes;
+
+#include "lib/ray_offset.glsl"
+
+layout(push_constant, scalar) uniform Push {
+    uint depth;  // vertices before this one
+    uint reserved;
+} push;
+
+// The slot that light found from the second vertex on goes to, and what later kernels need to know of the lobes so far.
+uint flags_after(uint flags, uint lobe) {
+    bool diffuse = lobe == LOBE_DIFFUSE;
+    uint slot = flags & FLAG_SLOT_MASK;
+    uint kept = flags & (FLAG_FIRST_DIFFUSE | FLAG_ALL_SPECULAR);
+    if (push.depth == 0u) {
+        slot = SLOT_SPECULAR;
+        kept |= diffuse ? FLAG_FIRST_DIFFUSE : 0u;
+    } else if (push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u) {
+        slot = diffuse ? SLOT_DIFFUSE : SLOT_CAUSTICS;
+    }
+    return slot | (diffuse ? kept & ~FLAG_ALL_SPECULAR : kept | FLAG_LAST_SPECULAR);
+}
+
+// How densities change: C for a camera's path, D for a light's (mis.glsl), up to the factor at arrival.
+float ratio_after(Vertex vertex, LobeSample drawn, vec3 viewer, float arriving_density) {
+    float reverse = lobe_density(vertex.matter, drawn.lobe, drawn.direction, viewer) * vertex.reverse_geometry;
+    if (FROM_LIGHT != 0u) {
+        // The first vertex: `arriving_density` is that of next-event estimation on the light, in 1/m².
+        return vertex.ratio * (push.depth == 0u ? 1.0 + reverse / arriving_density : reverse) / drawn.density;
+    }
+    if (push.depth == 0u) {
+        return drawn.lobe == LOBE_DIFFUSE ? vertex.ratio / drawn.density : 0.0;
+    }
+    return vertex.ratio * reverse / drawn.density;
+}
+
+bool scatter(uint path) {
+    Vertex vertex = load_vertex(vertices, path);
+    vec4 arrival = path_rays[2u * path + 1u];
+    Frame frame = frame_around(vertex.normal);
+    vec3 viewer = local_viewer(frame, -arrival.xyz);
+    uvec2 seed = texelFetch(path_seeds, int(path)).xy;
+    vec4 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_SCATTER + 2u * push.depth));
+    LobeSample drawn = sample_lobes(vertex.matter, viewer, random.x, random.yz);
+    vec3 direction = to_world(frame, drawn.direction);
+    float side = dot(vertex.geometric_normal, direction);
+    if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
+        return false;
+    }
+    vec4 state = path_states[path];
+    vec3 weight = drawn.weight;
+    if (SPECULAR_LOBES != 0u) {
+        uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+        weight *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
+    }
+    float scale = 1.0;
+    if (FROM_LIGHT != 0u) {
+        float arriving = abs(dot(vertex.geometric_normal, arrival.xyz));
+        scale = viewer.z * abs(side) / (max(arriving, 1e-6) * max(abs(drawn.direction.z), 1e-6));
+    } else if (TRANSMISSIVE != 0u && side < 0.0) {
+        // Radiance changes by the square of the ratio of indices.
+        scale = 1.0 / (vertex.matter.relative_ior * vertex.matter.relative_ior);
+    }
+    vec3 throughput = state.rgb * weight * scale;
+    // A camera's path may carry 1; a light's what it carried before.
+    float before = FROM_LIGHT != 0u ? max3(state.rgb) : 1.0;
+    // The bound ends even what scatters without loss.
+    float survival = min(max3(throughput) / max(before, 1e-37), push.depth < 8u ? 1.0 : 0.95);
+    if (!(survival > 0.0) || random.w >= survival) {
+        return false;
+    }
+    float ratio = LIGHT_PATHS != 0u ? ratio_after(vertex, drawn, viewer, arrival.w) : 0.0;
+    path_states[path] = vec4(throughput / survival, ratio);
+    path_flags[path] = flags_after(path_flags[path], drawn.lobe);
+    vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
+    path_rays[2u * path] = vec4(origin, abs(side));
+    path_rays[2u * path + 1u] = vec4(direction, drawn.density);
+    return true;
+}
+
+void main() {
+    uint path = queued_path(alive_paths);
+    bool wanted = path != NO_PATH && scatter(path);
+    APPEND_TO_QUEUE(active_paths, path, wanted)
+}

@@ -1,0 +1,254 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/texels.glsl"
+#include "lib/traced_scene.glsl"
+#include "path/mis.glsl"
+#include "path/queue.glsl"
+#include "path/state.glsl"
+#include "path/vertex.glsl"
+
+// What one path met. A camera's path adds the light that it ran into, weighted against other ways of finding it (mis.glsl); if
+// the surface scatters, its normals and lobes are left for the kernels that follow.
+
+layout(local_size_x = 64) in;
+
+// 1: paths from lights, which add nothing here.
+layout(constant_id = 2) const uint FROM_LIGHT = 0u;
+// The MATERIAL_ bits of the texture kinds that any material has.
+layout(constant_id = 3) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
+// 1: textures are filtered over the pixel at the first vertex, as rasterisation does.
+layout(constant_id = 4) const uint PIXEL_FOOTPRINT = 0u;
+// 1: lights send out paths of their own, so that camera paths carry the ratio C.
+layout(constant_id = 5) const uint LIGHT_PATHS = 1u;
+// 1: some mesh has vertex colors; some surface has a normal map and the tangents to use it.
+layout(constant_id = 6) const uint VERTEX_COLORS = 1u;
+layout(constant_id = 7) const uint NORMAL_MAPS = 1u;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer active_paths;
+layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
+layout(set = 0, binding = 2) uniform samplerBuffer path_states;
+layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
+layout(set = 0, binding = 4) uniform samplerBuffer path_hits;
+layout(set = 0, binding = 5) uniform usamplerBuffer triangles;
+layout(set = 0, binding = 6) uniform samplerBuffer corner_normals;    // rgba32f
+layout(set = 0, binding = 7) uniform samplerBuffer corner_colors;     // rgba8 unorm
+layout(set = 0, binding = 8) uniform samplerBuffer corner_texcoords;  // rgba32f: sets 0 and 1
+layout(set = 0, binding = 9) uniform samplerBuffer corner_tangents;   // rgba32f
+layout(set = 0, binding = 10) uniform usamplerBuffer materials;
+layout(set = 0, binding = 11) uniform samplerBuffer media;            // rgba32f: absorption in 1/m, 1 where the surface bounds a medium
+layout(set = 0, binding = 12) uniform usamplerBuffer material_textures;
+layout(set = 0, binding = 13) uniform usamplerBuffer texture_table;
+layout(set = 0, binding = 14) uniform samplerBuffer texels;
+layout(set = 0, binding = 15) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 16) writeonly buffer VertexBlock { uvec4 vertices[]; };
+layout(set = 0, binding = 17) buffer RadianceBlock { vec4 path_radiance[]; };
+layout(set = 0, binding = 18) buffer QueueBlock { uint alive_paths[]; };
+
+layout(push_constant, scalar) uniform Push {
+    vec3 sky;              // W/(m²·sr)
+    uint depth;            // vertices before this one
+    CameraRays rays;
+    vec2 pixel_size;       // of the image plane's half sides: 2/width, 2/height
+    float light_paths;     // N of mis.glsl
+    uint path_count;
+    uint ends;             // 1: nothing scatters here, the path only looks for light
+} push;
+
+struct Footprint {
+    vec4 dx;
+    vec4 dy;
+};
+
+vec4 interpolated(samplerBuffer corners, Triangle triangle, vec3 weights) {
+    return weights.x * texelFetch(corners, int(triangle.corners.x)) + weights.y * texelFetch(corners, int(triangle.corners.y))
+           + weights.z * texelFetch(corners, int(triangle.corners.z));
+}
+
+// The change of the texture coordinates from this pixel to the next one, where the neighbour's ray meets the plane of the triangle.
+vec4 texcoord_step(Triangle triangle, vec3 position, vec3 ray_step) {
+    vec3 normal = cross(triangle.edge1, triangle.edge2);
+    bool orthographic = camera.depth_range > 0.0;
+    vec3 eye = camera.position_rs + (orthographic ? ray_step : vec3(0.0));
+    vec3 way = position - camera.position_rs;
+    vec3 ray = orthographic ? camera.forward : way / max(dot(way, camera.forward), 1e-20) + ray_step;
+    vec3 start = orthographic ? position + ray_step : eye;
+    float along = dot(position - start, normal) / dot(ray, normal);
+    vec3 moved = start + along * ray - position;
+    float inverse = 1.0 / max(dot(normal, normal), 1e-37);
+    float u = dot(cross(moved, triangle.edge2), normal) * inverse;
+    float v = dot(cross(triangle.edge1, moved), normal) * inverse;
+    vec4 origin = texelFetch(corner_texcoords, int(triangle.corners.x));
+    return u * (texelFetch(corner_texcoords, int(triangle.corners.y)) - origin)
+           + v * (texelFetch(corner_texcoords, int(triangle.corners.z)) - origin);
+}
+
+vec2 set_of(uint texcoord, vec4 sets) {
+    return texcoord == 0u ? sets.xy : sets.zw;
+}
+
+// Texture use.layer of the material at texture coordinates `sets`.
+vec4 sample_use(uint material, uint use_number, vec4 sets, Footprint footprint) {
+    TextureUse use = load_texture_use(material_textures, material, use_number);
+    vec3 uv = vec3(set_of(use.texcoord, sets), 1.0);
+    mat2 linear = transpose(mat2(use.u_row.xy, use.v_row.xy));
+    vec2 dx = linear * set_of(use.texcoord, footprint.dx);
+    vec2 dy = linear * set_of(use.texcoord, footprint.dy);
+    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), dx, dy);
+}
+
+bool has_texture(Material material, uint kind) {
+    return (material.flags & TEXTURES & kind) != 0u;
+}
+
+// The textures of a material at a point, one after the other through one piece of code: kernels stay small.
+void apply_textures(inout MaterialPoint point, inout vec3 normal_texel, Material material, uint index, vec4 sets, Footprint footprint) {
+    [[dont_unroll]] for (uint use = 0u; use < 7u; ++use) {
+        if (!has_texture(material, MATERIAL_BASE_COLOR_TEXTURE << use)) {
+            continue;
+        }
+        vec4 texel = sample_use(index, use, sets, footprint);
+        if (use == USE_BASE_COLOR) {
+            point.base_color *= texel;
+        } else if (use == USE_METALLIC_ROUGHNESS) {
+            point.roughness *= texel.g;
+            point.metallic *= texel.b;
+        } else if (use == USE_NORMAL) {
+            normal_texel = texel.xyz * 2.0 - 1.0;
+        } else if (use == USE_EMISSIVE) {
+            point.emissive *= texel.rgb;
+        } else if (use == USE_SPECULAR) {
+            point.specular *= texel.a;
+        } else if (use == USE_SPECULAR_COLOR) {
+            point.specular_color *= texel.rgb;
+        } else {
+            point.transmission *= texel.r;
+        }
+    }
+}
+
+void add_radiance(uint path, uint slot, vec3 radiance) {
+    uint place = slot * push.path_count + path;
+    path_radiance[place] = vec4(path_radiance[place].rgb + radiance, 0.0);
+}
+
+// The slot of light that the path runs into here.
+uint slot_of_emission(uint flags) {
+    return push.depth == 0u ? SLOT_EMISSION : push.depth == 1u ? SLOT_DIRECT : flags & FLAG_SLOT_MASK;
+}
+
+// Returns whether the path goes on from here.
+bool meet_surface(uint path) {
+    Ray ray = load_ray(path_rays, path);
+    vec4 state = texelFetch(path_states, int(path));
+    uint flags = texelFetch(path_flags, int(path)).x;
+    vec4 hit = texelFetch(path_hits, int(path));
+    uint index = floatBitsToUint(hit.w);
+    if (index == 0xFFFFFFFFu) {
+        if (FROM_LIGHT == 0u && max3(push.sky) > 0.0) {
+            add_radiance(path, slot_of_emission(flags), state.rgb * push.sky);
+        }
+        return false;
+    }
+    Triangle triangle = load_triangle(triangles, index);
+    vec3 weights = vec3(1.0 - hit.y - hit.z, hit.yz);
+    vec3 position = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2;
+    vec3 face = front_normal(triangle);
+    bool front = dot(face, ray.direction) < 0.0;
+    vec3 geometric_normal = front ? face : -face;
+    float cosine = abs(dot(face, ray.direction));
+
+    Material material = load_material(materials, triangle.material);
+    vec4 color = VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
+    MaterialPoint point = material_factors(material, color);
+    vec3 normal_texel = vec3(0.0, 0.0, 1.0);
+    if ((material.flags & TEXTURES & MATERIAL_ALL_TEXTURES) != 0u) {
+        vec4 sets = interpolated(corner_texcoords, triangle, weights);
+        Footprint footprint = Footprint(vec4(0.0), vec4(0.0));
+        if (PIXEL_FOOTPRINT != 0u && push.depth == 0u) {
+            footprint.dx = texcoord_step(triangle, position, camera.right_scaled * push.pixel_size.x);
+            footprint.dy = texcoord_step(triangle, position, camera.down_scaled * push.pixel_size.y);
+        }
+        apply_textures(point, normal_texel, material, triangle.material, sets, footprint);
+    }
+
+    // ---- what the densities of mis.glsl need
+    float reverse_geometry = ray.cosine / max(hit.x * hit.x, 1e-30);
+    float ratio = state.w;
+    if (LIGHT_PATHS != 0u) {
+        if (FROM_LIGHT != 0u) {
+            ratio *= (ray.cosine < 0.0 ? 1.0 : hit.x * hit.x) / max(cosine, 1e-9);
+        } else if (push.depth == 0u) {
+            ratio = 1.0 / max(camera_rays_per_area(push.rays, camera.position_rs, camera.forward, position, face), 1e-37);
+        } else {
+            ratio *= hit.x * hit.x / max(cosine, 1e-9);
+        }
+    }
+
+    // ---- light
+    vec3 transmittance = vec3(1.0);
+    if (TRANSMISSIVE != 0u && !front) {
+        vec4 medium = texelFetch(media, int(triangle.material));
+        transmittance = exp(-medium.xyz * (medium.w * hit.x));
+    }
+    if (FROM_LIGHT == 0u) {
+        bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
+        vec3 emitted = emitted_radiance(material, point, front);
+        if (max3(emitted) > 0.0 && (!unlit || (flags & FLAG_ALL_SPECULAR) != 0u)) {
+            float weight = 1.0;
+            if (push.depth > 0u && triangle.light_density > 0.0) {
+                float sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? 2.0 : 1.0;
+                float next = triangle.light_density * hit.x * hit.x / max(cosine, 1e-9);
+                float others = next;
+                if (LIGHT_PATHS != 0u && push.depth > 1u) {
+                    // state.w · density is C_k · p(z_k → z_{k−1}) of the vertex that the ray left.
+                    others += next * state.w * ray.density * push.light_paths * (cosine * INVERSE_PI / sides) * reverse_geometry;
+                }
+                weight = ray.density / (ray.density + others);
+            }
+            add_radiance(path, slot_of_emission(flags), state.rgb * transmittance * emitted * weight);
+        }
+    }
+    Lobes lobes = lobes_of_material(material, point);
+    vec3 transmission = point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
+    bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
+    bool dark = max3(lobes.diffuse_albedo) <= 0.0 && (SPECULAR_LOBES == 0u || unlit || max(max3(lobes.f0), max(lobes.f90, max3(transmission))) <= 0.0);
+    if (push.ends != 0u || dark) {
+        return false;
+    }
+
+    // ---- the vertex
+    vec3 normal = geometric_normal;
+    if (!triangle.flat_normals) {
+        vec3 vertex_normal = normalize_or(interpolated(corner_normals, triangle, weights).xyz, face);
+        vec3 mapped = vertex_normal;
+        if (NORMAL_MAPS != 0u && has_texture(material, MATERIAL_NORMAL_TEXTURE)) {
+            vec4 tangent = interpolated(corner_tangents, triangle, weights);
+            vec3 unit_tangent = normalize_or(tangent.xyz, vec3(0.0));
+            vec3 bitangent = cross(vertex_normal, unit_tangent) * tangent.w;
+            vec2 slope = normal_texel.xy * material.normal_scale;
+            mapped = normalize_or(slope.x * unit_tangent + slope.y * bitangent + normal_texel.z * vertex_normal, vertex_normal);
+        }
+        normal = dot(vertex_normal, geometric_normal) < 0.0 ? -mapped : mapped;
+    }
+    uint first = uint(VERTEX_TEXELS) * path;
+    vertices[first] = uvec4(floatBitsToUint(position), pack_direction(geometric_normal));
+    vertices[first + 1u] = uvec4(floatBitsToUint(clamp(lobes.diffuse_albedo, 0.0, 1.0)), pack_direction(normal));
+    if (SPECULAR_LOBES != 0u) {
+        float relative_ior = 1.0;
+        if (TRANSMISSIVE != 0u && max3(transmission) > 0.0 && texelFetch(media, int(triangle.material)).w > 0.0) {
+            relative_ior = front ? material.ior : 1.0 / material.ior;
+        }
+        vertices[first + 2u] = uvec4(
+            floatBitsToUint(clamp(lobes.f0, 0.0, 1.0)), packUnorm2x16(vec2(lobes.f90, lobes.roughness)));
+        vertices[first + 3u] = uvec4(floatBitsToUint(clamp(transmission, 0.0, 1.0)), floatBitsToUint(relative_ior));
+        vertices[first + 4u] = uvec4(
+            floatBitsToUint(ratio), floatBitsToUint(reverse_geometry), packHalf2x16(transmittance.rg), packHalf2x16(vec2(transmittance.b, 0.0)));
+    }
+    return true;
+}
+
+void main() {
+    uint path = queued_path(active_paths);
+    bool alive = path != NO_PATH && meet_surface(path);
+    APPEND_TO_QUEUE(alive_paths, path, alive)
+}

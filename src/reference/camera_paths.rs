@@ -1,0 +1,165 @@
+//! Paths from the camera, pass by pass (glsl/path/): generate, then for each vertex intersect, surface, light, connect, scatter.
+//!
+//! With z_1 the first visible surface, each vertex adds one factor of
+//!
+//!   L = Σ_k ∫ L_e(z_{k+1}) Π_{i=1}^{k} f(z_i)·|cos| dω        W/(m²·sr)
+//!
+//! found by running into the light (surface) and by choosing a point of it (light, connect), weighted by the balance heuristic.
+
+use super::PixelFilter;
+use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS, Walk};
+use super::traced_scene::TracedScene;
+use super::tracer::View;
+use crate::graph::bindings::BufferRef;
+use crate::graph::{Graph, ReadBack};
+use crate::renderer::Slot;
+use crate::shaders::{path as shaders, types};
+
+/// Some samples of some pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wave {
+    pub(super) first_block: u32,
+    pub(super) block_count: u32,
+    pub(super) sample_count: u32,
+    pub(super) first_sample: u32,
+    /// Of the half.
+    pub(super) seed: u32,
+}
+
+impl Wave {
+    pub(super) fn paths_per_sample(&self) -> u32 {
+        64 * self.block_count
+    }
+}
+
+/// The sums of a run of pixels: [`Slot::ALL`] after each other, in the order of paths.
+pub(super) struct Sums(BufferRef<[f32; 4]>);
+
+impl Sums {
+    /// The sums so far.
+    pub(super) fn declare(graph: &mut Graph<'_>, wave: &Wave) -> Sums {
+        let sums = graph.buffer("path.sums", Slot::ALL.len() * wave.paths_per_sample() as usize);
+        graph.keep_for_read_back(sums);
+        Sums(sums)
+    }
+
+    /// Starts from zero.
+    pub(super) fn clear(&self, graph: &mut Graph<'_>, paths: &Paths) {
+        graph.fill_buffer("path/clear-radiance", paths.radiance, 0);
+        graph.fill_buffer("path/clear-sums", self.0, 0);
+        graph.want_buffer(self.0);
+    }
+
+    pub(super) fn read_back(&self, graph: &mut Graph<'_>) -> ReadBack {
+        graph.read_back_buffer(self.0)
+    }
+
+    /// Adds the samples of a wave that has come to its end.
+    pub(super) fn add(&self, graph: &mut Graph<'_>, paths: &Paths, wave: &Wave) {
+        let resolve = shaders::Resolve {
+            path_radiance: paths.radiance.read_write(),
+            slot_sums: self.0.read_write(),
+            push: shaders::ResolvePush {
+                paths_per_sample: wave.paths_per_sample(),
+                sample_count: wave.sample_count,
+                path_count: paths.capacity,
+                slot_count: Slot::ALL.len() as u32,
+            },
+        };
+        graph.pass("path/resolve", resolve).threads([wave.paths_per_sample(), 1, 1]);
+        graph.want_buffer(self.0);
+    }
+}
+
+/// Starts the wave's paths.
+pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: &Wave) {
+    paths.clear_queues(graph, Walk::FromCamera, 0);
+    let generate = shaders::Generate {
+        camera: paths.camera.clone(),
+        sobol: paths.sobol.clone(),
+        path_rays: paths.rays.write(),
+        path_states: paths.states.write(),
+        path_flags: paths.flags.write(),
+        path_seeds: paths.seeds.write(),
+        active_paths: paths.active(0).read_write(),
+        push: shaders::GeneratePush {
+            wave: types::WavePixels { size: view.size, first_block: wave.first_block, block_count: wave.block_count },
+            sample_count: wave.sample_count,
+            first_sample: wave.first_sample,
+            seed: wave.seed,
+            box_filter: u32::from(view.filter == PixelFilter::Box),
+        },
+    };
+    let threads = wave.paths_per_sample() * wave.sample_count;
+    graph.pass("path/generate", generate).note("paths", u64::from(threads)).threads([threads, 1, 1]);
+}
+
+/// Takes the paths to their vertex number `depth`, counted from 0, and on from there.
+pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
+    paths.intersect(graph, scene, Walk::FromCamera, depth);
+    paths.clear_queues(graph, Walk::FromCamera, depth + 1);
+    paths.surface(graph, scene, view, Walk::FromCamera, depth);
+    if view.bounces.is_none_or(|bounces| depth <= bounces) {
+        if scene.emitter_count > 0 {
+            find_light(graph, paths, scene, view, depth);
+        }
+        paths.scatter(graph, Walk::FromCamera, depth);
+    }
+}
+
+/// Next-event estimation.
+fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
+    let variants = paths.variants;
+    let light = shaders::Light {
+        alive_paths: paths.alive.texels(WORD),
+        path_rays: paths.rays.texels(FLOATS),
+        path_states: paths.states.texels(FLOATS),
+        path_flags: paths.flags.texels(WORD),
+        path_seeds: paths.seeds.texels(PAIR),
+        vertices: paths.vertices.texels(WORDS),
+        sobol: paths.sobol.clone(),
+        emitters: paths.scene.emitters.clone(),
+        lights: paths.scene.lights.clone(),
+        triangles: paths.scene.triangles.clone(),
+        materials: paths.scene.materials.clone(),
+        corner_texcoords: paths.scene.corner_texcoords.clone(),
+        material_textures: paths.scene.material_textures.clone(),
+        texture_table: paths.scene.texture_table.clone(),
+        texels: paths.scene.texels.clone(),
+        connection_rays: paths.connection_rays.write(),
+        connection_light: paths.connection_light.write(),
+        connections: paths.connections.read_write(),
+        bvh_nodes: paths.scene.bvh_nodes.clone(),
+        specular_lobes: variants.specular,
+        transmissive: variants.transmissive,
+        light_paths: variants.light_paths,
+        emissive_textures: u32::from(scene.emissive_textures),
+        push: shaders::LightPush {
+            emitter_count: scene.emitter_count,
+            depth,
+            light_paths: view.pixel_count(),
+            disc_area: (std::f64::consts::PI * scene.radius * scene.radius) as f32,
+        },
+    };
+    graph.pass("path/light", light).threads_indirect(paths.alive, 0);
+    let connect = shaders::Connect {
+        connections: paths.connections.texels(WORD),
+        connection_rays: paths.connection_rays.texels(FLOATS),
+        connection_light: paths.connection_light.texels(FLOATS),
+        bvh_nodes: paths.scene.bvh_nodes.clone(),
+        bvh_triangles: paths.scene.bvh_triangles.clone(),
+        path_radiance: paths.radiance.read_write(),
+        triangles: paths.scene.triangles.clone(),
+        corner_colors: paths.scene.corner_colors.clone(),
+        corner_texcoords: paths.scene.corner_texcoords.clone(),
+        materials: paths.scene.materials.clone(),
+        material_textures: paths.scene.material_textures.clone(),
+        texture_table: paths.scene.texture_table.clone(),
+        texels: paths.scene.texels.clone(),
+        alpha_masks: u32::from(scene.facts.alpha_masked),
+        vertex_colors: u32::from(scene.facts.vertex_colors),
+        specular_lobes: variants.specular,
+        push: shaders::ConnectPush { path_count: paths.capacity, reserved: 0 },
+    };
+    graph.pass("path/connect", connect).count("rays", paths.connections, 3).threads_indirect(paths.connections, 0);
+}

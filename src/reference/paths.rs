@@ -1,0 +1,234 @@
+//! Waves of paths: their buffers, and the passes that paths from the camera and from lights share (glsl/path/).
+//!
+//! `intersect` finds what each path meets, `surface` what that is made of, `scatter` sends the path on. What is between `surface` and
+//! `scatter` differs: [`super::camera_paths`] looks for light, [`super::light_paths`] for the camera.
+
+use ash::vk;
+
+use super::PixelFilter;
+use super::sobol::sobol_points;
+use super::traced_scene::{TracedBindings, TracedScene};
+use super::tracer::View;
+use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
+use crate::graph::{Dependence, Graph};
+use crate::renderer::Slot;
+use crate::shaders::{path as shaders, types};
+
+pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
+pub(super) const PAIR: vk::Format = vk::Format::R32G32_UINT;
+pub(super) const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
+pub(super) const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// Words before the numbers of the paths in a queue.
+const QUEUE_HEADER: usize = 4;
+
+/// Where the paths of a wave start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Walk {
+    FromCamera,
+    FromLight,
+}
+
+impl Walk {
+    fn flag(self) -> u32 {
+        u32::from(self == Walk::FromLight)
+    }
+
+    /// The piece that the passes are counted to.
+    fn pass(self, pass: &str) -> String {
+        let piece = if self == Walk::FromLight { "particle" } else { "path" };
+        format!("{piece}/{pass}")
+    }
+}
+
+/// What kernels are compiled for, from the scene's facts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Variants {
+    pub(super) specular: u32,
+    pub(super) transmissive: u32,
+    pub(super) light_paths: u32,
+}
+
+impl Variants {
+    fn of(scene: &TracedScene, view: &View) -> Variants {
+        Variants {
+            specular: u32::from(scene.facts.specular),
+            transmissive: u32::from(scene.facts.transmissive),
+            light_paths: u32::from(scene.needs_light_paths(view.bounces)),
+        }
+    }
+}
+
+/// The buffers of a wave.
+pub(super) struct Paths {
+    pub(super) scene: TracedBindings,
+    pub(super) variants: Variants,
+    pub(super) camera: Uniform<types::Camera>,
+    pub(super) sobol: TexelBuffer,
+    pub(super) rays: BufferRef<[f32; 4]>,
+    pub(super) states: BufferRef<[f32; 4]>,
+    pub(super) flags: BufferRef<u32>,
+    pub(super) seeds: BufferRef<[u32; 2]>,
+    hits: BufferRef<[f32; 4]>,
+    pub(super) vertices: BufferRef<[u32; 4]>,
+    pub(super) connection_rays: BufferRef<[f32; 4]>,
+    pub(super) connection_light: BufferRef<[f32; 4]>,
+    active: [BufferRef<u32>; 2],
+    pub(super) alive: BufferRef<u32>,
+    pub(super) connections: BufferRef<u32>,
+    pub(super) radiance: BufferRef<[f32; 4]>,
+    pub(super) capacity: u32,
+}
+
+impl Paths {
+    /// Buffers for `capacity` paths.
+    pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, view: &View, capacity: u32) -> Paths {
+        let variants = Variants::of(scene, view);
+        let paths = capacity as usize;
+        let lobes = 1 + variants.specular as usize;
+        let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
+        let queue = QUEUE_HEADER + paths;
+        Paths {
+            scene: scene.import(graph),
+            variants,
+            camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
+            sobol: graph.upload("path.sobol", &sobol_points(), Dependence::NONE).texels(WORDS),
+            rays: graph.buffer("path.rays", 2 * paths),
+            states: graph.buffer("path.states", paths),
+            flags: graph.buffer("path.flags", paths),
+            seeds: graph.buffer("path.seeds", paths),
+            hits: graph.buffer("path.hits", paths),
+            vertices: graph.buffer("path.vertices", vertex_texels * paths),
+            connection_rays: graph.buffer("path.connection_rays", 2 * paths),
+            connection_light: graph.buffer("path.connection_light", lobes * paths),
+            active: [graph.buffer("path.active.0", queue), graph.buffer("path.active.1", queue)],
+            alive: graph.buffer("path.alive", queue),
+            connections: graph.buffer("path.connections", queue),
+            radiance: graph.buffer("path.radiance", Slot::ALL.len() * paths),
+            capacity,
+        }
+    }
+
+    /// The queue of the paths that are on their way to vertex number `depth`, counted from 0.
+    pub(super) fn active(&self, depth: u32) -> BufferRef<u32> {
+        self.active[depth as usize % 2]
+    }
+
+    /// Empties the queues that are filled on the way to vertex number `depth`.
+    pub(super) fn clear_queues(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+        let clear = shaders::Clear {
+            active_paths: self.active(depth).read_write(),
+            alive_paths: self.alive.read_write(),
+            connections: self.connections.read_write(),
+        };
+        graph.pass(&walk.pass("clear"), clear).groups([1, 1, 1]);
+    }
+
+    /// What the paths of vertex number `depth` meet.
+    pub(super) fn intersect(&self, graph: &mut Graph<'_>, scene: &TracedScene, walk: Walk, depth: u32) {
+        let active = self.active(depth);
+        let intersect = shaders::Intersect {
+            active_paths: active.texels(WORD),
+            path_rays: self.rays.texels(FLOATS),
+            bvh_nodes: self.scene.bvh_nodes.clone(),
+            bvh_triangles: self.scene.bvh_triangles.clone(),
+            path_hits: self.hits.write(),
+            triangles: self.scene.triangles.clone(),
+            corner_colors: self.scene.corner_colors.clone(),
+            corner_texcoords: self.scene.corner_texcoords.clone(),
+            materials: self.scene.materials.clone(),
+            material_textures: self.scene.material_textures.clone(),
+            texture_table: self.scene.texture_table.clone(),
+            texels: self.scene.texels.clone(),
+            alpha_masks: u32::from(scene.facts.alpha_masked),
+            vertex_colors: u32::from(scene.facts.vertex_colors),
+        };
+        graph.pass(&walk.pass("intersect"), intersect).count("rays", active, 3).threads_indirect(active, 0);
+    }
+
+    /// What it is made of; where nothing scatters the paths end.
+    pub(super) fn surface(&self, graph: &mut Graph<'_>, scene: &TracedScene, view: &View, walk: Walk, depth: u32) {
+        let (active, variants) = (self.active(depth), self.variants);
+        let ends = view.bounces.is_some_and(|bounces| depth > bounces);
+        let pixels = view.size.map(|side| side as f32);
+        let surface = shaders::Surface {
+            active_paths: active.texels(WORD),
+            path_rays: self.rays.texels(FLOATS),
+            path_states: self.states.texels(FLOATS),
+            path_flags: self.flags.texels(WORD),
+            path_hits: self.hits.texels(FLOATS),
+            triangles: self.scene.triangles.clone(),
+            corner_normals: self.scene.corner_normals.clone(),
+            corner_colors: self.scene.corner_colors.clone(),
+            corner_texcoords: self.scene.corner_texcoords.clone(),
+            corner_tangents: self.scene.corner_tangents.clone(),
+            materials: self.scene.materials.clone(),
+            media: self.scene.media.clone(),
+            material_textures: self.scene.material_textures.clone(),
+            texture_table: self.scene.texture_table.clone(),
+            texels: self.scene.texels.clone(),
+            camera: self.camera.clone(),
+            vertices: self.vertices.write(),
+            path_radiance: self.radiance.read_write(),
+            alive_paths: self.alive.read_write(),
+            specular_lobes: variants.specular,
+            transmissive: variants.transmissive,
+            from_light: walk.flag(),
+            textures: scene.texture_kinds,
+            pixel_footprint: u32::from(view.filter == PixelFilter::Center && scene.facts.textured),
+            light_paths: variants.light_paths,
+            vertex_colors: u32::from(scene.facts.vertex_colors),
+            normal_maps: u32::from(scene.facts.normal_mapped),
+            push: shaders::SurfacePush {
+                sky: scene.sky,
+                depth,
+                rays: camera_rays(view),
+                pixel_size: pixels.map(|side| 2.0 / side),
+                light_paths: view.pixel_count(),
+                path_count: self.capacity,
+                ends: u32::from(ends),
+            },
+        };
+        graph.pass(&walk.pass("surface"), surface).threads_indirect(active, 0);
+    }
+
+    /// Sends the paths on from vertex number `depth`.
+    pub(super) fn scatter(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+        let (next, variants) = (self.active(depth + 1), self.variants);
+        let scatter = shaders::Scatter {
+            alive_paths: self.alive.texels(WORD),
+            path_seeds: self.seeds.texels(PAIR),
+            vertices: self.vertices.texels(WORDS),
+            sobol: self.sobol.clone(),
+            path_rays: self.rays.read_write(),
+            path_states: self.states.read_write(),
+            path_flags: self.flags.read_write(),
+            active_paths: next.read_write(),
+            bvh_nodes: self.scene.bvh_nodes.clone(),
+            specular_lobes: variants.specular,
+            transmissive: variants.transmissive,
+            from_light: walk.flag(),
+            light_paths: variants.light_paths,
+            push: shaders::ScatterPush { depth, reserved: 0 },
+        };
+        graph.pass(&walk.pass("scatter"), scatter).count("paths on", next, 3).threads_indirect(self.alive, 0);
+    }
+
+    /// Asks for all that the next submission goes on from.
+    pub(super) fn want(&self, graph: &mut Graph<'_>) {
+        graph.want_buffer(self.rays);
+        graph.want_buffer(self.states);
+        graph.want_buffer(self.flags);
+        graph.want_buffer(self.seeds);
+        for active in self.active {
+            graph.want_buffer(active);
+        }
+    }
+}
+
+/// Camera rays per solid angle on the axis, or per area across an orthographic view, for one sample of every pixel.
+pub(super) fn camera_rays(view: &View) -> types::CameraRays {
+    let length = |axis: [f32; 3]| glam::Vec3::from(axis).length();
+    let area = 4.0 * length(view.camera.right_scaled) * length(view.camera.down_scaled);
+    let pixels = view.size[0] as f32 * view.size[1] as f32;
+    types::CameraRays { density: pixels / area, orthographic: f32::from(view.camera.depth_range > 0.0) }
+}

@@ -1,0 +1,351 @@
+//! The path tracer: waves of paths through small kernels, sums of what they find per slot.
+//!
+//! A wave holds some samples of a run of pixels, one path each. Its paths advance together, vertex by vertex, through the kernels of
+//! [`super::camera_paths`]; each leaves a queue of the paths that go on, and the next one is dispatched for so many. Nothing two paths do
+//! touches the same memory, so the same samples give the same bits on one device.
+
+use std::sync::Arc;
+
+use super::camera_paths::{self, Sums, Wave};
+use super::light_paths::{self, Splats, Swarm, add_splats};
+use super::paths::Paths;
+use super::traced_scene::TracedScene;
+pub(crate) use super::traced_scene::traced_key;
+use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
+use crate::frame::camera::camera;
+use crate::graph::{Executed, Graph, Store};
+use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
+use crate::scene::Scene;
+use crate::shaders::types;
+use crate::vulkan::{Device, VulkanError};
+
+/// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
+const WAVE_PATHS: u32 = 1 << 18;
+/// Vertices that one submission advances a wave by.
+const DEPTHS_PER_SUBMISSION: u32 = 12;
+
+/// What a run of samples cost.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TraceCost {
+    /// GPU time, milliseconds.
+    pub(crate) gpu_ms: f64,
+    /// Time spent creating pipelines, milliseconds.
+    pub(crate) pipeline_ms: f64,
+    /// Rays cast: from the camera, between vertices, to lights.
+    pub(crate) rays: u64,
+    /// The passes, those of the same name together.
+    pub(crate) passes: Vec<PassTiming>,
+}
+
+/// Traces paths through one scene.
+pub(crate) struct PathTracer {
+    store: Store,
+    scene: Option<TracedScene>,
+    timing: Timing,
+    cost: TraceCost,
+}
+
+/// The picture that is traced.
+#[derive(Clone, Debug)]
+pub(crate) struct View {
+    pub(crate) size: [u32; 2],
+    pub(crate) camera: types::Camera,
+    pub(crate) bounces: Option<u32>,
+    pub(crate) filter: PixelFilter,
+    pub(crate) seed: u32,
+}
+
+impl View {
+    /// Pixels, and light paths a sample.
+    pub(super) fn pixel_count(&self) -> f32 {
+        self.size[0] as f32 * self.size[1] as f32
+    }
+}
+
+impl PathTracer {
+    pub(crate) fn new(device: &Arc<Device>) -> Result<PathTracer, VulkanError> {
+        Ok(PathTracer { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+    }
+
+    /// Brings the scene onto the device, if it is not there as it is now.
+    pub(crate) fn prepare(&mut self, scene: &Scene) -> Result<(), VulkanError> {
+        let key = traced_key(scene);
+        if self.scene.as_ref().is_none_or(|held| held.key != key) {
+            self.scene = None;
+            self.scene = Some(TracedScene::new(self.store.device(), scene)?);
+        }
+        Ok(())
+    }
+
+    /// The picture that a request asks for of the prepared scene.
+    pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
+        let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
+        View {
+            size: request.size,
+            camera: camera(&request.camera, request.size, origin),
+            bounces: request.bounces,
+            filter: request.filter,
+            seed: request.seed,
+        }
+    }
+
+    /// How the passes to come are timed.
+    pub(crate) fn set_timing(&mut self, timing: Timing) {
+        self.timing = timing;
+    }
+
+    /// What was spent since this was last asked.
+    pub(crate) fn take_cost(&mut self) -> TraceCost {
+        std::mem::take(&mut self.cost)
+    }
+
+    /// The passes of a frame in which nothing changed.
+    pub(crate) fn unchanged_passes(&self) -> Vec<PassTiming> {
+        vec![PassTiming {
+            piece: "path".to_owned(),
+            pass: String::new(),
+            ms: None,
+            skipped: Some("unchanged: geometry, materials, lights, camera".to_owned()),
+            work: std::collections::BTreeMap::new(),
+        }]
+    }
+
+    /// Device memory, bytes, by piece; `scene` is the scene itself.
+    pub(crate) fn memory_bytes(&self) -> std::collections::BTreeMap<String, u64> {
+        let mut bytes = self.store.memory_by_piece();
+        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, TracedScene::bytes));
+        bytes
+    }
+
+    /// The sums over samples `first .. first + count` of half `half` of every pixel.
+    pub(crate) fn sums(&mut self, view: &View, half: u32, first: u32, count: u32) -> Result<SlotSums, VulkanError> {
+        let [width, height] = view.size;
+        let blocks = width.div_ceil(8) * height.div_ceil(8);
+        let pixels = width as usize * height as usize;
+        let mut sums = SlotSums { samples: count, slots: std::array::from_fn(|_| vec![[0.0; 3]; pixels]) };
+        // Runs of blocks of equal length, so that the memory serves all.
+        let blocks_per_run = blocks_per_run(blocks);
+        for first_block in (0..blocks).step_by(blocks_per_run as usize) {
+            let block_count = blocks_per_run.min(blocks - first_block);
+            let texels = self.trace_from_camera(view, [first_block, block_count], half, [first, count])?;
+            scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
+        }
+        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        if scene.needs_light_paths(view.bounces) {
+            self.trace_from_lights(view, half, [first, count], &mut sums)?;
+        }
+        Ok(sums)
+    }
+
+    /// The sums of the pixels of some blocks: [`Slot::ALL`] after each other, in the order of paths.
+    fn trace_from_camera(
+        &mut self,
+        view: &View,
+        [first_block, block_count]: [u32; 2],
+        half: u32,
+        [first, count]: [u32; 2],
+    ) -> Result<Vec<[f32; 4]>, VulkanError> {
+        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let capacity = capacity(view, count);
+        let samples_per_wave = (capacity / (64 * block_count)).min(count);
+        let mut texels = Vec::new();
+        for done in (0..count).step_by(samples_per_wave as usize) {
+            let wave = Wave {
+                first_block,
+                block_count,
+                sample_count: samples_per_wave.min(count - done),
+                first_sample: first + done,
+                seed: seed_of_half(view.seed, half),
+            };
+            let mut depth = 0;
+            loop {
+                let mut graph = Graph::new(&mut self.store);
+                let paths = Paths::declare(&mut graph, scene, view, capacity);
+                let sums = Sums::declare(&mut graph, &wave);
+                if depth == 0 {
+                    if done == 0 {
+                        sums.clear(&mut graph, &paths);
+                    }
+                    camera_paths::generate(&mut graph, &paths, view, &wave);
+                }
+                let until = last_depth(view, depth, 1);
+                for depth in depth..until {
+                    camera_paths::advance(&mut graph, &paths, scene, view, depth);
+                }
+                depth = until;
+                paths.want(&mut graph);
+                graph.want_buffer(paths.radiance);
+                if self.cost.add(graph.run(self.timing)?) == 0 {
+                    break;
+                }
+            }
+            let mut graph = Graph::new(&mut self.store);
+            let paths = Paths::declare(&mut graph, scene, view, capacity);
+            let sums = Sums::declare(&mut graph, &wave);
+            sums.add(&mut graph, &paths, &wave);
+            graph.want_buffer(paths.radiance);
+            let last = done + wave.sample_count == count;
+            let read_back = last.then(|| sums.read_back(&mut graph));
+            let mut executed = graph.run(self.timing)?;
+            if let Some(read_back) = read_back {
+                texels = bytemuck::pod_collect_to_vec(&executed.take(read_back));
+            }
+            self.cost.add(executed);
+        }
+        Ok(texels)
+    }
+
+    /// Adds what light paths find, one path a pixel and sample.
+    fn trace_from_lights(
+        &mut self,
+        view: &View,
+        half: u32,
+        [first, count]: [u32; 2],
+        sums: &mut SlotSums,
+    ) -> Result<(), VulkanError> {
+        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let limit = self.store.device().limits().max_storage_buffer_range;
+        let all = view.size[0] * view.size[1];
+        let capacity = capacity(view, count);
+        for sample in first..first + count {
+            for first_path in (0..all).step_by(capacity as usize) {
+                let swarm = Swarm {
+                    first_path,
+                    path_count: capacity.min(all - first_path),
+                    seed: seed_of_sample(seed_of_half(view.seed, half), sample),
+                };
+                let mut depth = 0;
+                loop {
+                    let mut graph = Graph::new(&mut self.store);
+                    let paths = Paths::declare(&mut graph, scene, view, capacity);
+                    let splats = Splats::declare(&mut graph, scene, view, limit)?;
+                    if depth == 0 {
+                        if sample == first && first_path == 0 {
+                            splats.clear(&mut graph);
+                        }
+                        light_paths::emit(&mut graph, &paths, scene, view, &swarm);
+                    }
+                    let until = last_depth(view, depth, 0);
+                    for depth in depth..until {
+                        light_paths::advance(&mut graph, &paths, &splats, scene, view, depth);
+                    }
+                    depth = until;
+                    paths.want(&mut graph);
+                    splats.want(&mut graph);
+                    if self.cost.add(graph.run(self.timing)?) == 0 {
+                        break;
+                    }
+                }
+            }
+        }
+        let mut graph = Graph::new(&mut self.store);
+        let splats = Splats::declare(&mut graph, scene, view, limit)?;
+        let read_back = splats.read_back(&mut graph);
+        let mut executed = graph.run(self.timing)?;
+        add_splats(sums, &executed.take(read_back), scene);
+        self.cost.add(executed);
+        Ok(())
+    }
+}
+
+fn blocks_per_run(blocks: u32) -> u32 {
+    let runs = (blocks * 64).div_ceil(WAVE_PATHS).max(1);
+    blocks.div_ceil(runs)
+}
+
+/// Paths that memory is held for, when `count` samples of every pixel are taken.
+fn capacity(view: &View, count: u32) -> u32 {
+    let paths = 64 * blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
+    paths * (WAVE_PATHS / paths).clamp(1, count.max(1))
+}
+
+/// Up to which vertex a submission goes that starts with vertex number `depth`; the last vertex has number `bounces + beyond`.
+fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
+    let all = view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(1 + beyond));
+    (depth + DEPTHS_PER_SUBMISSION).min(all)
+}
+
+fn seed_of_half(seed: u32, half: u32) -> u32 {
+    seed.wrapping_mul(2).wrapping_add(half)
+}
+
+/// A seed for each sample of a half, different from those of the pixels' sequences.
+fn seed_of_sample(seed: u32, sample: u32) -> u32 {
+    let mixed = (u64::from(seed) << 32 | u64::from(sample)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    ((mixed ^ mixed >> 29) >> 32) as u32 ^ sample.rotate_left(16)
+}
+
+impl TraceCost {
+    /// Adds a submission. Returns how many paths go on from it.
+    fn add(&mut self, executed: Executed) -> u64 {
+        self.gpu_ms += executed.gpu_ms;
+        self.pipeline_ms += executed.pipeline_ms;
+        for pass in &executed.passes {
+            self.rays += pass.work.get("rays").copied().unwrap_or(0);
+            let same = |known: &&mut PassTiming| known.piece == pass.piece && known.pass == pass.pass;
+            match self.passes.iter_mut().find(same) {
+                Some(known) => {
+                    known.ms = match (known.ms, pass.ms) {
+                        (Some(a), Some(b)) => Some(a + b),
+                        (a, b) => a.or(b),
+                    };
+                    for (name, count) in &pass.work {
+                        *known.work.entry(name.clone()).or_insert(0) += count;
+                    }
+                    if pass.skipped.is_none() {
+                        known.skipped = None;
+                    }
+                }
+                None => self.passes.push(pass.clone()),
+            }
+        }
+        executed.passes.iter().rev().find_map(|pass| pass.work.get("paths on").copied()).unwrap_or(0)
+    }
+}
+
+/// Puts the sums of a run of blocks where their pixels are (glsl/path/pixels.glsl).
+fn scatter_sums(sums: &mut SlotSums, texels: &[[f32; 4]], size: [u32; 2], [first_block, block_count]: [u32; 2]) {
+    let [width, height] = size;
+    let blocks_per_row = width.div_ceil(8);
+    let paths = 64 * block_count;
+    for place in 0..paths {
+        let block = first_block + place / 64;
+        let (lane, part) = (place & 7, place >> 3 & 7);
+        let x = block % blocks_per_row * 8 + (part & 1) * 4 + (lane & 3);
+        let y = block / blocks_per_row * 8 + (part >> 1) * 2 + (lane >> 2);
+        if x < width && y < height {
+            let pixel = y as usize * width as usize + x as usize;
+            for slot in 0..Slot::ALL.len() {
+                let [red, green, blue, _] = texels[slot * paths as usize + place as usize];
+                sums.slots[slot][pixel] = [red, green, blue];
+            }
+        }
+    }
+}
+
+/// A request's samples by the path tracer.
+pub(super) struct PathSource {
+    tracer: PathTracer,
+    view: View,
+}
+
+impl PathSource {
+    /// # Errors
+    /// A scene that does not fit the device.
+    pub(super) fn new(context: &Context, scene: &Scene, request: &ReferenceRequest) -> Result<PathSource, Error> {
+        let mut tracer = PathTracer::new(context.shared_device())?;
+        tracer.prepare(scene)?;
+        let view = tracer.view(request);
+        Ok(PathSource { tracer, view })
+    }
+}
+
+impl SampleSource for PathSource {
+    fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error> {
+        Ok(self.tracer.sums(&self.view, half, first, count)?)
+    }
+
+    fn rays(&self) -> u64 {
+        self.tracer.cost.rays
+    }
+}
