@@ -156,7 +156,7 @@ impl Paths {
             material_textures: self.scene.material_textures.clone(),
             texture_table: self.scene.texture_table.clone(),
             texels: self.scene.texels.clone(),
-            alpha_masks: u32::from(scene.facts.alpha_masked),
+            alpha_masks: u32::from(scene.cutouts),
             vertex_colors: u32::from(scene.facts.vertex_colors),
         };
         graph.pass(&walk.pass("intersect"), intersect).count("rays", active, 3).threads_indirect(active, 0);

@@ -14,7 +14,7 @@ use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Alpha, Bounds, Facts, Material, Primitive, Scene};
+use crate::scene::{Alpha, Bounds, Facts, Material, Primitive, Scene, Texture};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
 
@@ -74,6 +74,8 @@ pub(crate) struct TracedScene {
     /// The kinds of textures that any material reads, as the shaders' bits.
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
+    /// Some triangle is there at some of its points only.
+    pub(super) cutouts: bool,
     pub(crate) emitter_count: u32,
     /// What all lights but the sky send out, W (luminance).
     pub(super) power: f64,
@@ -115,12 +117,17 @@ impl TracedScene {
             emitter_table(&triangles, scene.materials(), &lights, radius);
         let records: Vec<[[u32; 4]; 4]> =
             triangles.iter().zip(&light_densities).map(|(triangle, density)| triangle.record(*density)).collect();
-        let masked = |material: u32| scene.materials()[material as usize].alpha != Alpha::Opaque;
+        let cutouts: Vec<Cutout> =
+            scene.materials().iter().map(|material| cutout(material, scene.textures(), &facts)).collect();
         let bvh_triangles: Vec<BvhTriangle> = triangles
             .iter()
-            .map(|triangle| BvhTriangle {
-                corners: triangle.corners.map(|corner| corner.to_array()),
-                flags: u32::from(masked(triangle.material)),
+            .map(|triangle| match cutouts[triangle.material as usize] {
+                // What is not there has no area.
+                Cutout::Nothing => BvhTriangle::default(),
+                kind => BvhTriangle {
+                    corners: triangle.corners.map(|corner| corner.to_array()),
+                    flags: u32::from(kind == Cutout::PerPoint),
+                },
             })
             .collect();
         let bvh = Bvh::build(&bvh_triangles);
@@ -165,6 +172,7 @@ impl TracedScene {
                 .materials()
                 .iter()
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
+            cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
             power,
             buffers,
@@ -212,6 +220,33 @@ impl TracedScene {
 pub(crate) fn traced_key(scene: &Scene) -> u64 {
     let revisions = scene.revisions();
     hash_of(&(scene.identity(), revisions.geometry, revisions.materials, revisions.lights))
+}
+
+/// What its alpha leaves of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cutout {
+    Everything,
+    Nothing,
+    /// A texture or vertex colours decide.
+    PerPoint,
+}
+
+fn cutout(material: &Material, textures: &[Texture], facts: &Facts) -> Cutout {
+    let Alpha::Mask { cutoff } = material.alpha else { return Cutout::Everything };
+    let (mut least, mut most) = (material.base_color[3], material.base_color[3]);
+    if let Some(texture) = material.base_color_texture {
+        let alphas = || textures[texture.texture.0].rgba8.chunks_exact(4).map(|texel| f32::from(texel[3]) / 255.0);
+        least *= alphas().fold(1.0, f32::min);
+        most *= alphas().fold(0.0, f32::max);
+    }
+    if facts.vertex_colors {
+        least = 0.0;
+    }
+    match (least >= cutoff, most < cutoff) {
+        (true, _) => Cutout::Everything,
+        (_, true) => Cutout::Nothing,
+        _ => Cutout::PerPoint,
+    }
 }
 
 /// Absorption in 1/m, and 1 where the surface bounds a medium (KHR_materials_volume: x = −ln(color)/distance).
