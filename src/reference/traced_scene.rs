@@ -104,6 +104,7 @@ pub(crate) struct TracedBindings {
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
+const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 impl TracedScene {
     /// Flattens, sorts and uploads the scene as it is now.
@@ -156,7 +157,7 @@ impl TracedScene {
             upload("traced.media", bytemuck::cast_slice(&media), FLOATS)?,
             upload("traced.material_textures", bytemuck::cast_slice(&uses), WORDS)?,
             upload("traced.texture_table", bytemuck::cast_slice(&texels.table), WORDS)?,
-            upload("traced.texels", bytemuck::cast_slice(&texels.texels), BYTES)?,
+            upload("traced.texels", bytemuck::cast_slice(&texels.texels), HALVES)?,
             upload("traced.emitters", bytemuck::cast_slice(&emitters), WORDS)?,
             upload("traced.lights", bytemuck::cast_slice(&light_records), WORDS)?,
         ];
