@@ -1,0 +1,253 @@
+//! Direct light by rays: against the path tracer, which finds the same light by other code, and against closed forms.
+
+use glam::{DAffine3, DVec3};
+
+use super::scenes::{add_light, box_faces, builtin, floor, lambert, place, quad, request, view};
+use super::session::Session;
+use crate::renderer::{DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
+use crate::scene::{CameraView, LightKind, Material, Scene};
+
+const SIZE: [u32; 2] = [64, 48];
+
+/// The technique `direct` with its light traced.
+fn traced(samples: u32) -> Settings {
+    let mut settings = Settings::new(Technique::Direct, Preset::Default);
+    settings.methods.direct = DirectMethod::Traced;
+    settings.traced.samples = samples;
+    settings
+}
+
+fn true_light(samples: u32) -> Settings {
+    let mut settings = Settings::new(Technique::Path, Preset::Default);
+    (settings.path.spp, settings.path.bounces) = (samples, Some(0));
+    settings
+}
+
+fn direct_of(frame: &Frame) -> Vec<DVec3> {
+    frame.slots[&Slot::Direct].pixels.iter().map(|pixel| DVec3::from(pixel.map(f64::from))).collect()
+}
+
+fn asked(camera: CameraView) -> FrameRequest {
+    FrameRequest { image: false, ..request(SIZE, camera, &[Slot::Direct]) }
+}
+
+/// The slot `direct` in the scene's own view.
+fn direct(session: &Session, scene: &Scene, settings: &Settings) -> Vec<DVec3> {
+    let camera = scene.camera_view(None).expect("a view");
+    direct_of(&session.render(scene, settings, &asked(camera)))
+}
+
+/// The root mean square difference over the mean of `truth`, and the ratio of the means.
+fn compared(what: &str, found: &[DVec3], truth: &[DVec3]) -> (f64, f64) {
+    let count = (3 * truth.len()) as f64;
+    let mean = |pixels: &[DVec3]| pixels.iter().map(|pixel| pixel.element_sum()).sum::<f64>() / count;
+    let square: f64 = found.iter().zip(truth).map(|(found, truth)| (found - truth).length_squared()).sum();
+    let (error, ratio) = ((square / count).sqrt() / mean(truth), mean(found) / mean(truth));
+    println!("{what}: rmse {error:.2e} of the mean, ratio of the means {ratio:.6}");
+    (error, ratio)
+}
+
+/// The scene without what its surfaces emit.
+fn without_emission(mut scene: Scene) -> Scene {
+    for index in 0..scene.materials().len() {
+        let material = Material { emissive: [0.0; 3], ..scene.materials()[index].clone() };
+        scene.set_material(crate::scene::MaterialId(index), material).expect("sound");
+    }
+    scene
+}
+
+#[test]
+fn punctual_lights_are_as_paths_find_them() {
+    let session = Session::open();
+    for (name, samples) in [("cornell-point", 1), ("cornell-spot", 1), ("lights", 512)] {
+        let scene = without_emission(builtin(name));
+        let truth = direct(&session, &scene, &true_light(samples));
+        let (error, _) = compared(name, &direct(&session, &scene, &traced(4)), &truth);
+        assert!(error < 1e-3, "{name}: {error:.2e}");
+    }
+}
+
+/// A glossy floor and a rough one below a lamp, a block between them, and a sky.
+fn lamp_over_gloss(sky: [f32; 3], emission: f32) -> Scene {
+    let metal = Material { metallic: 1.0, roughness: 0.25, ..lambert([0.9, 0.7, 0.4]) };
+    let mut scene = floor(1.0, metal);
+    let lamp = Material { emissive: [emission; 3], base_color: [0.0, 0.0, 0.0, 1.0], ..lambert([0.0; 3]) };
+    let lamp = scene.add_material(lamp).expect("sound");
+    let plain = scene.add_material(lambert([0.6, 0.6, 0.7])).expect("sound");
+    let over = [[-0.4, 1.0, -0.6], [0.4, 1.0, -0.6], [0.4, 1.0, -0.1], [-0.4, 1.0, -0.1]];
+    place(&mut scene, vec![quad(over, lamp)], DAffine3::IDENTITY);
+    // Turned inside out: its faces look outwards.
+    let mut block = box_faces([0.2, 0.3, 0.2], [plain; 6]);
+    block.iter_mut().for_each(|face| face.indices.reverse());
+    place(&mut scene, block, DAffine3::from_translation(DVec3::new(0.3, 0.3, -0.4)));
+    scene.set_sky(sky);
+    scene
+}
+
+#[test]
+fn surfaces_and_sky_are_as_paths_find_them() {
+    let session = Session::open();
+    let camera = view(DVec3::new(0.1, 0.9, 1.7), DVec3::new(0.0, 0.2, 0.0));
+    let panel = builtin("cornell-panel");
+    let view_of_panel = panel.camera_view(None).expect("a view");
+    let cases = [
+        ("panel", panel, view_of_panel, 0.03),
+        ("sky", lamp_over_gloss([0.3, 0.5, 0.8], 0.0), camera.clone(), 0.03),
+        ("lamp", lamp_over_gloss([0.0; 3], 6.0), camera.clone(), 0.03),
+        ("lamp and sky", lamp_over_gloss([0.3, 0.5, 0.8], 6.0), camera, 0.03),
+    ];
+    for (what, scene, camera, bound) in cases {
+        let render = |settings: &Settings| direct_of(&session.render(&scene, settings, &asked(camera.clone())));
+        let truth = render(&true_light(1024));
+        let (few, _) = compared(&format!("{what}, 4 samples"), &render(&traced(4)), &truth);
+        let (error, ratio) = compared(&format!("{what}, 256 samples"), &render(&traced(256)), &truth);
+        assert!(error < bound && error < few / 4.0, "{what}: {error:.2e}, with 4 samples {few:.2e}");
+        assert!((ratio - 1.0).abs() < 2e-3, "{what}: {ratio}");
+    }
+}
+
+#[test]
+fn a_plane_under_a_point_light_shows_cosine_over_squared_distance() {
+    let session = Session::open();
+    let mut scene = floor(2.0, lambert([0.5, 0.25, 0.75]));
+    let light = DVec3::new(0.4, 1.1, -0.3);
+    add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [3.0; 3]);
+    // From low above the plane, so that depths are at their worst.
+    for eye in [DVec3::new(0.3, 2.4, 0.5), DVec3::new(1.9, 0.05, 0.4), DVec3::new(30.0, 2.0, 1.0)] {
+        let camera = view(eye, DVec3::ZERO);
+        let found = direct_of(&session.render(&scene, &traced(0), &asked(camera.clone())));
+        let world = camera.world;
+        let mut seen = 0;
+        for (index, found) in (0..).zip(found) {
+            let (x, y) = (f64::from(index % SIZE[0]) + 0.5, f64::from(index / SIZE[0]) + 0.5);
+            let [width, height] = SIZE.map(f64::from);
+            let half = 30_f64.to_radians().tan();
+            let ray = DVec3::new((2.0 * x - width) / height * half, -(2.0 * y / height - 1.0) * half, -1.0);
+            let ray = world.transform_vector3(ray);
+            let point = eye - ray * (eye.y / ray.y);
+            if ray.y >= 0.0 || point.abs().max_element() > 1.95 {
+                continue;
+            }
+            let to_light = light - point;
+            let irradiance = 3.0 * to_light.normalize().y / to_light.length_squared();
+            let expected = DVec3::new(0.5, 0.25, 0.75) * (irradiance / std::f64::consts::PI);
+            let error = ((found - expected) / expected).abs().max_element();
+            // Half of a unit in the last place of the albedo's half floats.
+            assert!(error < 5e-4, "{found} in place of {expected} at {point} from {eye}");
+            seen += 1;
+        }
+        assert!(seen > 20, "only {seen} pixels show the plane from {eye}");
+    }
+}
+
+#[test]
+fn no_traced_light_leaks_into_dark_rooms() {
+    let session = Session::open();
+    let scene = builtin("leak");
+    let light = |camera: &str| {
+        let camera = scene.camera_view(Some(camera)).expect("one of its cameras");
+        let pixels = direct_of(&session.render(&scene, &traced(4), &asked(camera)));
+        pixels.iter().map(|pixel| pixel.element_sum()).sum::<f64>() / (3 * pixels.len()) as f64
+    };
+    assert!(light("lit") > 0.1, "the lit hall");
+    for camera in ["thin", "thick", "sealed"] {
+        assert_eq!(light(camera), 0.0, "{camera}");
+    }
+}
+
+#[test]
+fn cut_out_surfaces_cast_cut_out_shadows() {
+    let session = Session::open();
+    let scene = builtin("textured");
+    let truth = direct(&session, &scene, &true_light(64));
+    let (error, ratio) = compared("textured", &direct(&session, &scene, &traced(4)), &truth);
+    assert!(error < 0.02 && (ratio - 1.0).abs() < 2e-3, "{error:.2e} {ratio}");
+}
+
+#[test]
+fn traced_light_is_the_same_in_every_run() {
+    let scene = builtin("lights");
+    let bits = |frame: &Frame| -> Vec<u32> {
+        frame.slots[&Slot::Direct].pixels.iter().flatten().map(|channel| channel.to_bits()).collect()
+    };
+    let session = Session::open();
+    let asked = asked(scene.camera_view(None).expect("a view"));
+    let mut renderer = session.renderer(&traced(4));
+    let first = bits(&renderer.render(&scene, &asked).expect("a frame"));
+    renderer.invalidate();
+    assert!(first == bits(&renderer.render(&scene, &asked).expect("a frame")));
+    assert!(first == bits(&Session::open().render(&scene, &traced(4), &asked)));
+}
+
+/// Every pass's name, and why it did not run.
+fn passes(frame: &Frame) -> Vec<(String, Option<&str>)> {
+    let name = |pass: &crate::renderer::PassTiming| format!("{}/{}", pass.piece, pass.pass);
+    frame.timings.passes.iter().map(|pass| (name(pass), pass.skipped.as_deref())).collect()
+}
+
+#[test]
+fn only_lights_that_there_are_cost_passes() {
+    let session = Session::open();
+    let run = |scene: &Scene, settings: &Settings| {
+        let camera = scene.camera_view(None).expect("a view");
+        let frame = session.render(scene, settings, &FrameRequest { timing: Timing::Passes, ..asked(camera) });
+        let names = passes(&frame).into_iter().filter(|(name, _)| name.starts_with("direct") || name.contains("view"));
+        names.map(|(name, reason)| (name, reason.map(str::to_owned))).collect::<Vec<_>>()
+    };
+    let skipped = |name: &str, reason: &str| (name.to_owned(), Some(reason.to_owned()));
+    let runs = |name: &str| (name.to_owned(), None);
+    let nothing_glossy = "no sky, no glossy surface that sees an emissive one";
+    assert_eq!(
+        run(&builtin("cornell-point"), &traced(4)),
+        [
+            runs("direct/punctual"),
+            skipped("direct/emitters", "no emissive surface"),
+            skipped("direct/directions", nothing_glossy)
+        ]
+    );
+    let panel = builtin("cornell-panel");
+    assert_eq!(
+        run(&panel, &traced(4)),
+        [
+            skipped("direct/punctual", "no punctual light"),
+            runs("direct/emitters"),
+            skipped("direct/directions", nothing_glossy)
+        ]
+    );
+    let without_samples = run(&panel, &traced(0));
+    assert_eq!(without_samples[1], skipped("direct/emitters", "no samples asked for"));
+    assert_eq!(run(&floor(1.0, lambert([0.5; 3])), &traced(4)), [skipped("direct/", "no light")]);
+}
+
+/// The scene for rays is there if it is used, follows edits, and goes with the method.
+#[test]
+fn a_renderer_holds_what_rays_meet_while_it_sends_any() {
+    let session = Session::open();
+    let mut scene = builtin("cornell-point");
+    let request = asked(scene.camera_view(None).expect("a view"));
+    let mut renderer = session.renderer(&Settings::new(Technique::Direct, Preset::Default));
+    let bytes = |frame: &Frame| frame.timings.memory_bytes["scene"];
+    let mapped = bytes(&renderer.render(&scene, &request).expect("a frame"));
+    renderer.set_settings(traced(4));
+    let first = renderer.render(&scene, &request).expect("a frame");
+    assert!(bytes(&first) > mapped);
+    let again = renderer.render(&scene, &request).expect("a frame");
+    assert!(passes(&again).iter().all(|(_, skipped)| skipped.is_some()), "nothing changed");
+
+    // A block beyond the walls moves the middle of the scene, which a renderer works around, but not that of the held G-buffer.
+    let material = scene.add_material(lambert([0.2, 0.4, 0.8])).expect("sound");
+    let far = DAffine3::from_translation(DVec3::new(9.0, 0.0, 0.0));
+    place(&mut scene, box_faces([0.1; 3], [material; 6]), far);
+    let inside = box_faces([0.1; 3], [material; 6]);
+    let center = scene.placed_lights()[0].position - DVec3::new(0.2, 0.4, 0.0);
+    place(&mut scene, inside, DAffine3::from_translation(center));
+    let edited = direct_of(&renderer.render(&scene, &request).expect("a frame"));
+    let fresh = direct_of(&session.render(&scene, &traced(4), &request));
+    let (error, _) = compared("an edited scene", &edited, &fresh);
+    assert!(error < 1e-3, "{error:.2e}");
+    assert!(compared("the edit", &direct_of(&first), &fresh).0 > 0.01, "it shows");
+
+    renderer.set_settings(Settings::new(Technique::Direct, Preset::Default));
+    let last = renderer.render(&scene, &request).expect("a frame");
+    assert!(bytes(&last) < bytes(&first), "the memory is given back");
+}
