@@ -5,7 +5,9 @@ use glam::{DAffine3, DVec3};
 use super::scenes::{add_light, box_faces, builtin, floor, lambert, place, quad, request, view};
 use super::session::Session;
 use crate::renderer::{DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
-use crate::scene::{CameraView, LightKind, Material, Scene};
+use crate::scene::{
+    Alpha, CameraView, Light, LightId, LightKind, Material, MaterialId, Primitive, Scene, Texture, TextureRef, Wrap,
+};
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -51,17 +53,33 @@ fn compared(what: &str, found: &[DVec3], truth: &[DVec3]) -> (f64, f64) {
 fn without_emission(mut scene: Scene) -> Scene {
     for index in 0..scene.materials().len() {
         let material = Material { emissive: [0.0; 3], ..scene.materials()[index].clone() };
-        scene.set_material(crate::scene::MaterialId(index), material).expect("sound");
+        scene.set_material(MaterialId(index), material).expect("sound");
     }
     scene
+}
+
+/// Paths choose among lights at random, so each light is traced alone: then they have no noise either.
+fn true_punctual_light(session: &Session, scene: &Scene) -> Vec<DVec3> {
+    let mut sum = vec![DVec3::ZERO; SIZE[0] as usize * SIZE[1] as usize];
+    for kept in 0..scene.lights().len() {
+        let mut scene = scene.clone();
+        for other in (0..scene.lights().len()).filter(|&other| other != kept) {
+            let light = Light { intensity: [0.0; 3], ..scene.lights()[other].clone() };
+            scene.set_light(LightId(other), light).expect("sound");
+        }
+        for (sum, light) in sum.iter_mut().zip(direct(session, &scene, &true_light(1))) {
+            *sum += light;
+        }
+    }
+    sum
 }
 
 #[test]
 fn punctual_lights_are_as_paths_find_them() {
     let session = Session::open();
-    for (name, samples) in [("cornell-point", 1), ("cornell-spot", 1), ("lights", 512)] {
+    for name in ["cornell-point", "cornell-spot", "lights"] {
         let scene = without_emission(builtin(name));
-        let truth = direct(&session, &scene, &true_light(samples));
+        let truth = true_punctual_light(&session, &scene);
         let (error, _) = compared(name, &direct(&session, &scene, &traced(4)), &truth);
         assert!(error < 1e-3, "{name}: {error:.2e}");
     }
@@ -88,22 +106,35 @@ fn lamp_over_gloss(sky: [f32; 3], emission: f32) -> Scene {
 fn surfaces_and_sky_are_as_paths_find_them() {
     let session = Session::open();
     let camera = view(DVec3::new(0.1, 0.9, 1.7), DVec3::new(0.0, 0.2, 0.0));
+    let mut all_kinds = lamp_over_gloss([0.3, 0.5, 0.8], 6.0);
+    add_light(&mut all_kinds, LightKind::Point, DVec3::new(-0.7, 0.8, 0.5), DVec3::NEG_Y, [0.3, 0.4, 0.2]);
     let panel = builtin("cornell-panel");
     let view_of_panel = panel.camera_view(None).expect("a view");
     let cases = [
         ("panel", panel, view_of_panel, 0.03),
         ("sky", lamp_over_gloss([0.3, 0.5, 0.8], 0.0), camera.clone(), 0.03),
-        ("lamp", lamp_over_gloss([0.0; 3], 6.0), camera.clone(), 0.03),
-        ("lamp and sky", lamp_over_gloss([0.3, 0.5, 0.8], 6.0), camera, 0.03),
+        ("lamp", lamp_over_gloss([0.0; 3], 6.0), camera.clone(), 0.06),
+        ("all kinds", all_kinds, camera, 0.06),
     ];
     for (what, scene, camera, bound) in cases {
-        let render = |settings: &Settings| direct_of(&session.render(&scene, settings, &asked(camera.clone())));
+        let asked = FrameRequest { size: [40, 30], ..asked(camera) };
+        let render = |settings: &Settings| direct_of(&session.render(&scene, settings, &asked));
         let truth = render(&true_light(1024));
         let (few, _) = compared(&format!("{what}, 4 samples"), &render(&traced(4)), &truth);
         let (error, ratio) = compared(&format!("{what}, 256 samples"), &render(&traced(256)), &truth);
         assert!(error < bound && error < few / 4.0, "{what}: {error:.2e}, with 4 samples {few:.2e}");
-        assert!((ratio - 1.0).abs() < 2e-3, "{what}: {ratio}");
+        assert!((ratio - 1.0).abs() < 5e-3, "{what}: {ratio}");
     }
+}
+
+/// Where a pixel of a [`view`] sees the plane y = 0.
+fn point_of_floor(camera: &CameraView, pixel: u32) -> Option<DVec3> {
+    let center = [pixel % SIZE[0], pixel / SIZE[0]].map(|place| f64::from(place) + 0.5);
+    let [width, height] = SIZE.map(f64::from);
+    let scale = 30_f64.to_radians().tan() / height;
+    let ray = DVec3::new((2.0 * center[0] - width) * scale, (height - 2.0 * center[1]) * scale, -1.0);
+    let (ray, eye) = (camera.world.transform_vector3(ray), camera.world.translation);
+    (ray.y < 0.0).then(|| eye - ray * (eye.y / ray.y))
 }
 
 #[test]
@@ -113,21 +144,14 @@ fn a_plane_under_a_point_light_shows_cosine_over_squared_distance() {
     let light = DVec3::new(0.4, 1.1, -0.3);
     add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [3.0; 3]);
     // From low above the plane, so that depths are at their worst.
-    for eye in [DVec3::new(0.3, 2.4, 0.5), DVec3::new(1.9, 0.05, 0.4), DVec3::new(30.0, 2.0, 1.0)] {
+    for eye in [DVec3::new(0.3, 2.4, 0.5), DVec3::new(1.9, 0.05, 0.4), DVec3::new(12.0, 3.0, 1.0)] {
         let camera = view(eye, DVec3::ZERO);
         let found = direct_of(&session.render(&scene, &traced(0), &asked(camera.clone())));
-        let world = camera.world;
         let mut seen = 0;
-        for (index, found) in (0..).zip(found) {
-            let (x, y) = (f64::from(index % SIZE[0]) + 0.5, f64::from(index / SIZE[0]) + 0.5);
-            let [width, height] = SIZE.map(f64::from);
-            let half = 30_f64.to_radians().tan();
-            let ray = DVec3::new((2.0 * x - width) / height * half, -(2.0 * y / height - 1.0) * half, -1.0);
-            let ray = world.transform_vector3(ray);
-            let point = eye - ray * (eye.y / ray.y);
-            if ray.y >= 0.0 || point.abs().max_element() > 1.95 {
+        for (pixel, found) in (0..).zip(found) {
+            let Some(point) = point_of_floor(&camera, pixel).filter(|point| point.abs().max_element() < 1.95) else {
                 continue;
-            }
+            };
             let to_light = light - point;
             let irradiance = 3.0 * to_light.normalize().y / to_light.length_squared();
             let expected = DVec3::new(0.5, 0.25, 0.75) * (irradiance / std::f64::consts::PI);
@@ -155,13 +179,52 @@ fn no_traced_light_leaks_into_dark_rooms() {
     }
 }
 
+/// A quad of 4×4 texels, every other one cut out, high above the floor, as large as the floor sees it from the light.
 #[test]
 fn cut_out_surfaces_cast_cut_out_shadows() {
     let session = Session::open();
-    let scene = builtin("textured");
-    let truth = direct(&session, &scene, &true_light(64));
-    let (error, ratio) = compared("textured", &direct(&session, &scene, &traced(4)), &truth);
-    assert!(error < 0.02 && (ratio - 1.0).abs() < 2e-3, "{error:.2e} {ratio}");
+    let mut scene = floor(1.0, lambert([0.5; 3]));
+    let alpha = |texel: u32| if (texel % 4 + texel / 4).is_multiple_of(2) { 255 } else { 0 };
+    let texture = Texture {
+        name: String::new(),
+        width: 4,
+        height: 4,
+        rgba8: (0..16).flat_map(|texel| [255, 255, 255, alpha(texel)]).collect(),
+        wrap: [Wrap::Repeat; 2],
+        nearest: true,
+        srgb: true,
+    };
+    let texture = TextureRef::new(scene.add_texture(texture).expect("sound"));
+    let lattice =
+        Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_color_texture: Some(texture), ..lambert([0.5; 3]) };
+    let lattice = scene.add_material(lattice).expect("sound");
+    let corners = [[-0.5, 1.5, -0.5], [-0.5, 1.5, 0.5], [0.5, 1.5, 0.5], [0.5, 1.5, -0.5]];
+    let texcoords = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
+    place(
+        &mut scene,
+        vec![Primitive { texcoords: [Some(texcoords), None], ..quad(corners, lattice) }],
+        DAffine3::IDENTITY,
+    );
+    // At twice the lattice's height: its shadow just covers the floor, texel by texel.
+    let light = DVec3::new(0.0, 3.0, 0.0);
+    add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [5.0; 3]);
+    let camera = view(DVec3::new(0.3, 1.2, 1.4), DVec3::ZERO);
+    let found = direct_of(&session.render(&scene, &traced(0), &asked(camera.clone())));
+    let (mut lit, mut dark) = (0, 0);
+    for (pixel, found) in (0..).zip(found) {
+        let Some(point) = point_of_floor(&camera, pixel).filter(|point| point.abs().max_element() < 0.98) else {
+            continue;
+        };
+        let cell = (point + 1.0) * 2.0;
+        // Borders of texels apart.
+        if [cell.x, cell.z].iter().any(|place| (place - place.round()).abs() < 0.02) {
+            continue;
+        }
+        let opaque = (cell.x.floor() as u32 + cell.z.floor() as u32).is_multiple_of(2);
+        assert_eq!(found.x == 0.0, opaque, "{found} at {point}");
+        if opaque { dark += 1 } else { lit += 1 }
+    }
+    assert!(lit > 200 && dark > 200, "{lit} lit, {dark} dark");
 }
 
 #[test]
@@ -234,13 +297,10 @@ fn a_renderer_holds_what_rays_meet_while_it_sends_any() {
     let again = renderer.render(&scene, &request).expect("a frame");
     assert!(passes(&again).iter().all(|(_, skipped)| skipped.is_some()), "nothing changed");
 
-    // A block beyond the walls moves the middle of the scene, which a renderer works around, but not that of the held G-buffer.
-    let material = scene.add_material(lambert([0.2, 0.4, 0.8])).expect("sound");
-    let far = DAffine3::from_translation(DVec3::new(9.0, 0.0, 0.0));
-    place(&mut scene, box_faces([0.1; 3], [material; 6]), far);
-    let inside = box_faces([0.1; 3], [material; 6]);
-    let center = scene.placed_lights()[0].position - DVec3::new(0.2, 0.4, 0.0);
-    place(&mut scene, inside, DAffine3::from_translation(center));
+    // A block that moves far beyond the walls takes the middle of the scene along; the G-buffer keeps the origin that it had.
+    let block = scene.instances().last().expect("it has blocks").node;
+    let far = DAffine3::from_translation(DVec3::new(9.0, 0.0, 0.0)) * scene.nodes()[block.0].local;
+    scene.set_local_transform(block, far).expect("finite");
     let edited = direct_of(&renderer.render(&scene, &request).expect("a frame"));
     let fresh = direct_of(&session.render(&scene, &traced(4), &request));
     let (error, _) = compared("an edited scene", &edited, &fresh);
