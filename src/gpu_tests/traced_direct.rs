@@ -6,7 +6,8 @@ use super::scenes::{add_light, box_faces, builtin, floor, lambert, place, quad, 
 use super::session::Session;
 use crate::renderer::{DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{
-    Alpha, CameraView, Light, LightId, LightKind, Material, MaterialId, Primitive, Scene, Texture, TextureRef, Wrap,
+    Alpha, CameraView, Light, LightId, LightKind, Material, MaterialId, Primitive, Projection, Scene, Texture,
+    TextureRef, Wrap,
 };
 
 const SIZE: [u32; 2] = [64, 48];
@@ -127,11 +128,12 @@ fn surfaces_and_sky_are_as_paths_find_them() {
     }
 }
 
-/// Where a pixel of a [`view`] sees the plane y = 0.
+/// Where a pixel of a perspective view sees the plane y = 0.
 fn point_of_floor(camera: &CameraView, pixel: u32) -> Option<DVec3> {
+    let Projection::Perspective { vertical_fov, .. } = camera.projection else { return None };
     let center = [pixel % SIZE[0], pixel / SIZE[0]].map(|place| f64::from(place) + 0.5);
     let [width, height] = SIZE.map(f64::from);
-    let scale = 30_f64.to_radians().tan() / height;
+    let scale = (0.5 * vertical_fov).tan() / height;
     let ray = DVec3::new((2.0 * center[0] - width) * scale, (height - 2.0 * center[1]) * scale, -1.0);
     let (ray, eye) = (camera.world.transform_vector3(ray), camera.world.translation);
     (ray.y < 0.0).then(|| eye - ray * (eye.y / ray.y))
@@ -143,9 +145,12 @@ fn a_plane_under_a_point_light_shows_cosine_over_squared_distance() {
     let mut scene = floor(2.0, lambert([0.5, 0.25, 0.75]));
     let light = DVec3::new(0.4, 1.1, -0.3);
     add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [3.0; 3]);
-    // From low above the plane, so that depths are at their worst.
-    for eye in [DVec3::new(0.3, 2.4, 0.5), DVec3::new(1.9, 0.05, 0.4), DVec3::new(12.0, 3.0, 1.0)] {
-        let camera = view(eye, DVec3::ZERO);
+    // From above, from where the plane is seen edge-on, and through a telescope, where positions are at their worst.
+    let eyes = [[0.3, 2.4, 0.5, 60.0], [1.9, 0.05, 0.4, 60.0], [12.0, 3.0, 1.0, 60.0], [250.0, 180.0, 90.0, 0.8]];
+    for [x, y, z, degrees] in eyes {
+        let eye = DVec3::new(x, y, z);
+        let projection = Projection::Perspective { vertical_fov: f64::to_radians(degrees), aspect: None, near: 0.01 };
+        let camera = CameraView { projection, ..view(eye, DVec3::ZERO) };
         let found = direct_of(&session.render(&scene, &traced(0), &asked(camera.clone())));
         let mut seen = 0;
         for (pixel, found) in (0..).zip(found) {
