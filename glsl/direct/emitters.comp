@@ -34,7 +34,8 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
     vec2 place = point_of_triangle(random.yz);
-    vec3 way = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2 - receiver.surface.position_rs;
+    vec3 target = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2;
+    vec3 way = target - receiver.surface.position_rs;
     float distance2 = max(dot(way, way), 1e-30);
     vec3 to_light = way * inversesqrt(distance2);
     float cosine = -dot(front_normal(triangle), to_light);
@@ -49,7 +50,7 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     vec3 reflected = diffuse_part.value * weight_of_point(density, diffuse_part.density)
                      + specular_part.value * weight_of_point(density, specular_part.density);
     vec3 light = reflected * emissive_radiance(triangle, material, place) / density;
-    if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, to_light, sqrt(distance2) * 0.9999)) {
+    if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, target - receiver.ray_origin, 0.9999)) {
         return vec3(0.0);
     }
     return light;

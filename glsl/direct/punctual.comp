@@ -31,8 +31,9 @@ vec3 reflected_radiance(Receiver receiver, Light light) {
     if (max3(radiance) <= 0.0) {
         return vec3(0.0);
     }
-    float distance = light.kind == LIGHT_DIRECTIONAL ? 3e38 : length(light.position_rs - point.position_rs);
-    return is_occluded(receiver.ray_origin, illumination.to_light, distance) ? vec3(0.0) : radiance;
+    bool directional = light.kind == LIGHT_DIRECTIONAL;
+    vec3 way = directional ? illumination.to_light : light.position_rs - receiver.ray_origin;
+    return is_occluded(receiver.ray_origin, way, directional ? 3e38 : 1.0) ? vec3(0.0) : radiance;
 }
 
 void main() {

@@ -59,15 +59,21 @@ fn without_emission(mut scene: Scene) -> Scene {
     scene
 }
 
+/// The scene with some of its punctual lights put out.
+fn without_light(scene: &Scene, dark: impl Fn(usize) -> bool) -> Scene {
+    let mut scene = scene.clone();
+    for index in (0..scene.lights().len()).filter(|&index| dark(index)) {
+        let light = Light { intensity: [0.0; 3], ..scene.lights()[index].clone() };
+        scene.set_light(LightId(index), light).expect("sound");
+    }
+    scene
+}
+
 /// Paths choose among lights at random, so each light is traced alone: then they have no noise either.
 fn true_punctual_light(session: &Session, scene: &Scene) -> Vec<DVec3> {
     let mut sum = vec![DVec3::ZERO; SIZE[0] as usize * SIZE[1] as usize];
     for kept in 0..scene.lights().len() {
-        let mut scene = scene.clone();
-        for other in (0..scene.lights().len()).filter(|&other| other != kept) {
-            let light = Light { intensity: [0.0; 3], ..scene.lights()[other].clone() };
-            scene.set_light(LightId(other), light).expect("sound");
-        }
+        let scene = without_light(scene, |light| light != kept);
         for (sum, light) in sum.iter_mut().zip(direct(session, &scene, &true_light(1))) {
             *sum += light;
         }
@@ -109,12 +115,16 @@ fn surfaces_and_sky_are_as_paths_find_them() {
     let camera = view(DVec3::new(0.1, 0.9, 1.7), DVec3::new(0.0, 0.2, 0.0));
     let mut all_kinds = lamp_over_gloss([0.3, 0.5, 0.8], 6.0);
     add_light(&mut all_kinds, LightKind::Point, DVec3::new(-0.7, 0.8, 0.5), DVec3::NEG_Y, [0.3, 0.4, 0.2]);
+    // Points of an emitter that all but touches what it lights.
+    let sphere = without_light(&builtin("lights"), |_| true);
+    let view_of_sphere = sphere.camera_view(None).expect("a view");
     let panel = builtin("cornell-panel");
     let view_of_panel = panel.camera_view(None).expect("a view");
     let cases = [
         ("panel", panel, view_of_panel, 0.03),
         ("sky", lamp_over_gloss([0.3, 0.5, 0.8], 0.0), camera.clone(), 0.03),
         ("lamp", lamp_over_gloss([0.0; 3], 6.0), camera.clone(), 0.06),
+        ("sphere on a block", sphere, view_of_sphere, 0.1),
         ("all kinds", all_kinds, camera, 0.06),
     ];
     for (what, scene, camera, bound) in cases {
