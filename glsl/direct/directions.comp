@@ -8,7 +8,7 @@
 //
 //   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L / p_k        p: path/lobes.glsl
 //
-// The light of emitters is weighted against the points that `emitters` draws, lobe by lobe, by the balance heuristic.
+// The light of emitters is weighted against the points that `emitters` draws, lobe by lobe, by the power heuristic.
 
 layout(local_size_x = 64) in;
 
@@ -40,7 +40,7 @@ vec3 light_from(Receiver receiver, LobeSample drawn, vec3 direction) {
         return vec3(0.0);
     }
     float density = triangle.light_density * push.density_scale * hit.distance * hit.distance / max(cosine, 1e-9);
-    return emissive_radiance(triangle, material, hit.barycentric) * (drawn.density / (drawn.density + density));
+    return emissive_radiance(triangle, material, hit.barycentric) * power_heuristic(drawn.density, density);
 }
 
 vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {

@@ -8,12 +8,9 @@
 //
 //   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L_e(y_k) · V / p_k        p = P(triangle)/A · d²/(n_y·−l)   [1/sr]
 //
-// Where `directions` looks for emitters too, each lobe is weighted by the balance heuristic (Veach & Guibas 1995).
+// `directions` finds the same light, as many times. Each lobe is weighted by the power heuristic (Veach & Guibas 1995).
 
 layout(local_size_x = 64) in;
-
-// 1: as many directions of the BRDF look for emitters as well.
-layout(constant_id = 4) const uint WEIGHTED = 0u;
 
 layout(set = 0, binding = 8) uniform usamplerBuffer emitters;
 layout(set = 0, binding = 9) uniform usamplerBuffer sobol;
@@ -24,10 +21,6 @@ layout(push_constant, scalar) uniform Push {
     uint sample_count;
     float density_scale;  // from a triangle's density among all lights to that among emissive triangles
 } push;
-
-float weight_of_point(float density, float density_of_lobe) {
-    return WEIGHTED != 0u ? density / (density + density_of_lobe) : 1.0;
-}
 
 vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
@@ -47,8 +40,8 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     LobeValue diffuse_part = diffuse_lobe(scattering.matter, scattering.viewer, direction, scattering.shares.x);
     LobeValue specular_part = specular_lobe(scattering.matter, scattering.viewer, direction, scattering.shares);
     float density = triangle.light_density * push.density_scale * distance2 / max(cosine, 1e-9);
-    vec3 reflected = diffuse_part.value * weight_of_point(density, diffuse_part.density)
-                     + specular_part.value * weight_of_point(density, specular_part.density);
+    vec3 reflected = diffuse_part.value * power_heuristic(density, diffuse_part.density)
+                     + specular_part.value * power_heuristic(density, specular_part.density);
     vec3 light = reflected * emissive_radiance(triangle, material, place) / density;
     if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, target - receiver.ray_origin, 0.9999)) {
         return vec3(0.0);

@@ -46,6 +46,12 @@ Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
     return receiver;
 }
 
+// The weight of a sample that was drawn with `density`, where another one could have been drawn with `other`.
+float power_heuristic(float density, float other) {
+    float ratio = other / density;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
 // The sequence of samples of a pixel: the same in every frame.
 uint seed_of_pixel(ivec2 pixel) {
     return mix_bits(uint(pixel.y) << 16 | uint(pixel.x));

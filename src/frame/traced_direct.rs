@@ -1,7 +1,8 @@
 //! The `direct` slot by rays from the G-buffer's surfaces to the lights: exact visibility in place of shadow maps (glsl/direct/).
 //!
-//! Punctual lights take one ray each and are without noise. Emissive surfaces are estimated from points drawn by power, the sky from
-//! directions drawn by the BRDF. Each kind of light has a kernel of its own, which adds to what the one before it found: kernels stay
+//! Punctual lights take one ray each and are without noise. Emissive surfaces are estimated from points drawn by power and from
+//! directions drawn by the BRDF, each weighted against the other: points alone are noisy where an emitter is near or a lobe narrow. The
+//! sky is estimated from the same directions. Each kind of light has a kernel of its own, which adds to what the one before it found: kernels stay
 //! small, and a scene runs only those that it has lights for.
 
 use ash::vk;
@@ -25,12 +26,10 @@ pub(crate) fn traced(
 ) -> Option<ImageRef> {
     let emissive = scene.emissive_count > 0;
     let sky = scene.sky.iter().any(|&channel| channel > 0.0);
-    // A narrow lobe sees emitters better by its own directions than by points of them.
-    let weighted = emissive && scene.facts.glossy;
     let wanted = |reason: Option<&'static str>| reason.or((settings.samples == 0).then_some("no samples asked for"));
     let shift = (origin - scene.origin).as_vec3().to_array();
     let bindings = scene.import(graph);
-    let frame = TracedFrame { buffer, scene, bindings, shift, samples: settings.samples, weighted };
+    let frame = TracedFrame { buffer, scene, bindings, shift, samples: settings.samples };
     let mut direct = None;
     match (scene.punctual_count == 0).then_some("no punctual light") {
         Some(reason) => graph.skip("direct/punctual", reason),
@@ -40,7 +39,7 @@ pub(crate) fn traced(
         Some(reason) => graph.skip("direct/emitters", reason),
         None => direct = Some(frame.emitters(graph, direct)),
     }
-    match wanted((!sky && !weighted).then_some("no sky, no glossy surface that sees an emissive one")) {
+    match wanted((!sky && !emissive).then_some("no sky, no emissive surface")) {
         Some(reason) => graph.skip("direct/directions", reason),
         None => direct = Some(frame.directions(graph, direct)),
     }
@@ -54,7 +53,6 @@ struct TracedFrame<'a> {
     bindings: TracedBindings,
     shift: [f32; 3],
     samples: u32,
-    weighted: bool,
 }
 
 impl TracedFrame<'_> {
@@ -127,7 +125,6 @@ impl TracedFrame<'_> {
             transmissive: 0,
             adds,
             emissive_textures: u32::from(self.scene.emissive_textures),
-            weighted: u32::from(self.weighted),
             alpha_masks: u32::from(self.scene.facts.alpha_masked),
             vertex_colors: u32::from(self.scene.facts.vertex_colors),
             push: EmittersPush {
@@ -167,7 +164,7 @@ impl TracedFrame<'_> {
             transmissive: 0,
             adds,
             emissive_textures: u32::from(self.scene.emissive_textures),
-            finds_emitters: u32::from(self.weighted),
+            finds_emitters: u32::from(self.scene.emissive_count > 0),
             alpha_masks: u32::from(self.scene.facts.alpha_masked),
             vertex_colors: u32::from(self.scene.facts.vertex_colors),
             push: DirectionsPush {
