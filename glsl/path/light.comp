@@ -1,7 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "lib/sobol.glsl"
-#include "lib/texels.glsl"
 #include "path/emitters.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -18,8 +17,6 @@ layout(local_size_x = 64) in;
 
 // 1: lights send out paths of their own.
 layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
-// 1: the radiance of some emissive triangles is textured.
-layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
@@ -43,6 +40,7 @@ layout(set = 0, binding = 17) buffer QueueBlock { uint connections[]; };
 layout(set = 0, binding = 18) uniform usamplerBuffer bvh_nodes;
 
 #include "lib/ray_offset.glsl"
+#include "path/emissive_points.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
@@ -70,15 +68,6 @@ LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
     return LightSample(illumination.to_light, distance, illumination.irradiance / emitter.probability, 0.0, emission);
 }
 
-vec3 emissive_texel(Triangle triangle, vec2 place) {
-    vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
-                + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
-                + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
-    TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
-    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
-    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0)).rgb;
-}
-
 LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
@@ -90,12 +79,9 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
     float next = triangle.light_density * distance2 / max(cosine, 1e-9);
-    vec3 radiance = material.emissive;
-    if (EMISSIVE_TEXTURES != 0u && (material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
-        radiance *= emissive_texel(triangle, place);
-    }
+    vec3 irradiance = cosine > 0.0 ? emissive_radiance(triangle, material, place) / next : vec3(0.0);
     return LightSample(
-        to_light, sqrt(distance2) * 0.9999, cosine > 0.0 ? radiance / next : vec3(0.0), next,
+        to_light, sqrt(distance2) * 0.9999, irradiance, next,
         cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);
 }
 

@@ -13,6 +13,7 @@ pub(crate) mod light_views;
 pub(crate) mod scene_data;
 pub(crate) mod textures;
 pub(crate) mod tonemap;
+pub(crate) mod traced_direct;
 #[cfg(test)]
 pub(crate) mod twins;
 pub(crate) mod view_layout;

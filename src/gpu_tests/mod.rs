@@ -27,3 +27,4 @@ mod scenes;
 mod session;
 mod skipping;
 mod tonemap;
+mod traced_direct;

@@ -28,7 +28,7 @@ mod sobol;
 #[cfg(test)]
 mod tests;
 mod texels;
-mod traced_scene;
+pub(crate) mod traced_scene;
 pub(crate) mod tracer;
 
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,6 @@
 use ash::vk;
 
 use super::PixelFilter;
-use super::sobol::sobol_points;
 use super::traced_scene::{TracedBindings, TracedScene};
 use super::tracer::View;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
@@ -83,7 +82,7 @@ pub(super) struct Paths {
 impl Paths {
     /// Buffers for `capacity` paths.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, view: &View, capacity: u32) -> Paths {
-        let variants = Variants::of(scene, view);
+        let (variants, bindings) = (Variants::of(scene, view), scene.import(graph));
         let paths = capacity as usize;
         let lobes = 1 + variants.specular as usize;
         let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
@@ -91,10 +90,10 @@ impl Paths {
         let totals = graph.buffer("path.totals", 4);
         graph.fill_buffer("path/clear-totals", totals, 0);
         Paths {
-            scene: scene.import(graph),
+            sobol: bindings.sobol.clone(),
+            scene: bindings,
             variants,
             camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
-            sobol: graph.upload("path.sobol", &sobol_points(), Dependence::NONE).texels(WORDS),
             rays: graph.buffer("path.rays", 2 * paths),
             states: graph.buffer("path.states", paths),
             flags: graph.buffer("path.flags", paths),

@@ -7,6 +7,7 @@ use ash::vk;
 use glam::{DMat3, DVec3, Vec3};
 
 use super::emitters::{EmitterTable, emitter_table};
+use super::sobol::sobol_points;
 use super::texels::Texels;
 use crate::frame::light_set::{punctual_light, shining_lights};
 use crate::frame::scene_data::{material_record, texture_kinds};
@@ -77,6 +78,10 @@ pub(crate) struct TracedScene {
     /// Some triangle is there at some of its points only.
     pub(super) cutouts: bool,
     pub(crate) emitter_count: u32,
+    pub(crate) punctual_count: u32,
+    pub(crate) emissive_count: u32,
+    /// From a triangle's density among all lights to that among emissive triangles.
+    pub(crate) emissive_density_scale: f32,
     /// What all lights but the sky send out, W (luminance).
     pub(super) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
@@ -98,7 +103,10 @@ pub(crate) struct TracedBindings {
     pub(crate) texture_table: TexelBuffer,
     pub(crate) texels: TexelBuffer,
     pub(crate) emitters: TexelBuffer,
+    /// Emissive triangles alone.
+    pub(crate) emissive: TexelBuffer,
     pub(crate) lights: TexelBuffer,
+    pub(crate) sobol: TexelBuffer,
 }
 
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -114,7 +122,7 @@ impl TracedScene {
         let facts = scene.facts();
         let (triangles, corners) = flatten(scene, origin, &facts)?;
         let lights = shining_lights(scene);
-        let EmitterTable { records: emitters, light_densities, power } =
+        let EmitterTable { records: emitters, light_densities, power, triangle_records, triangle_power } =
             emitter_table(&triangles, scene.materials(), &lights, radius);
         let records: Vec<[[u32; 4]; 4]> =
             triangles.iter().zip(&light_densities).map(|(triangle, density)| triangle.record(*density)).collect();
@@ -159,7 +167,9 @@ impl TracedScene {
             upload("traced.texture_table", bytemuck::cast_slice(&texels.table), WORDS)?,
             upload("traced.texels", bytemuck::cast_slice(&texels.texels), HALVES)?,
             upload("traced.emitters", bytemuck::cast_slice(&emitters), WORDS)?,
+            upload("traced.emissive", bytemuck::cast_slice(&triangle_records), WORDS)?,
             upload("traced.lights", bytemuck::cast_slice(&light_records), WORDS)?,
+            upload("traced.sobol", bytemuck::cast_slice(&sobol_points()), WORDS)?,
         ];
         let revisions = scene.revisions();
         Ok(TracedScene {
@@ -175,6 +185,9 @@ impl TracedScene {
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
             cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
+            punctual_count: u32::try_from(lights.len()).unwrap_or(0),
+            emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
+            emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
             power,
             buffers,
         })
@@ -193,26 +206,30 @@ impl TracedScene {
     }
 
     pub(crate) fn import(&self, graph: &mut Graph<'_>) -> TracedBindings {
-        let mut bind = |name: &str| {
+        let mut bind = |name: &str, dependence: Dependence| {
             let found = self.buffers.iter().find(|(known, ..)| *known == name);
             let (name, buffer, format) = found.expect("every buffer is made with the scene");
-            graph.import_buffer::<u32>(name, buffer, self.key, Dependence::GEOMETRY).texels(*format)
+            graph.import_buffer::<u32>(name, buffer, self.key, dependence).texels(*format)
         };
+        let (geometry, materials) = (Dependence::GEOMETRY, Dependence::MATERIALS);
+        let lights = geometry | materials | Dependence::LIGHTS;
         TracedBindings {
-            bvh_nodes: bind("traced.bvh_nodes"),
-            bvh_triangles: bind("traced.bvh_triangles"),
-            triangles: bind("traced.triangles"),
-            corner_normals: bind("traced.corner_normals"),
-            corner_colors: bind("traced.corner_colors"),
-            corner_texcoords: bind("traced.corner_texcoords"),
-            corner_tangents: bind("traced.corner_tangents"),
-            materials: bind("traced.materials"),
-            media: bind("traced.media"),
-            material_textures: bind("traced.material_textures"),
-            texture_table: bind("traced.texture_table"),
-            texels: bind("traced.texels"),
-            emitters: bind("traced.emitters"),
-            lights: bind("traced.lights"),
+            bvh_nodes: bind("traced.bvh_nodes", geometry),
+            bvh_triangles: bind("traced.bvh_triangles", geometry),
+            triangles: bind("traced.triangles", geometry),
+            corner_normals: bind("traced.corner_normals", geometry),
+            corner_colors: bind("traced.corner_colors", geometry),
+            corner_texcoords: bind("traced.corner_texcoords", geometry),
+            corner_tangents: bind("traced.corner_tangents", geometry),
+            materials: bind("traced.materials", materials),
+            media: bind("traced.media", materials),
+            material_textures: bind("traced.material_textures", materials),
+            texture_table: bind("traced.texture_table", materials),
+            texels: bind("traced.texels", materials),
+            emitters: bind("traced.emitters", lights),
+            emissive: bind("traced.emissive", lights),
+            lights: bind("traced.lights", lights),
+            sobol: bind("traced.sobol", Dependence::NONE),
         }
     }
 }
