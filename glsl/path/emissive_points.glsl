@@ -14,9 +14,7 @@ vec3 emissive_radiance(Triangle triangle, Material material, vec2 place) {
     if (EMISSIVE_TEXTURES == 0u || (material.flags & MATERIAL_EMISSIVE_TEXTURE) == 0u) {
         return material.emissive;
     }
-    vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
-                + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
-                + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
+    vec4 sets = interpolated(corner_texcoords, triangle, vec3(1.0 - place.x - place.y, place));
     TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
     vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
     vec2 texcoord = vec2(dot(use.u_row, uv), dot(use.v_row, uv));

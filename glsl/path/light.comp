@@ -81,7 +81,7 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     float next = triangle.light_density * distance2 / max(cosine, 1e-9);
     vec3 irradiance = cosine > 0.0 ? emissive_radiance(triangle, material, place) / next : vec3(0.0);
     return LightSample(
-        to_light, sqrt(distance2) * 0.9999, irradiance, next,
+        to_light, sqrt(distance2), irradiance, next,
         cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);
 }
 
@@ -91,18 +91,20 @@ float weight_of_next(LightSample light, float density, float light_ratio, float 
     return 1.0 / (1.0 + hit + light_ratio * reverse);
 }
 
+LightSample light_from(Emitter emitter, vec3 position_rs, vec2 random) {
+    if (emitter.is_triangle) {
+        return sample_triangle(emitter, position_rs, random);
+    }
+    return sample_punctual(emitter, position_rs);
+}
+
 bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2]) {
     Vertex vertex = load_vertex(vertices, path);
     vec3 to_viewer = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
     vec4 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_LIGHT + 2u * push.depth));
     Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
-    LightSample light;
-    if (emitter.is_triangle) {
-        light = sample_triangle(emitter, vertex.position_rs, random.yz);
-    } else {
-        light = sample_punctual(emitter, vertex.position_rs);
-    }
+    LightSample light = light_from(emitter, vertex.position_rs, random.yz);
     float side = dot(vertex.geometric_normal, light.to_light);
     Frame frame = frame_around(vertex.normal);
     vec3 direction = to_local(frame, light.to_light);
@@ -129,8 +131,12 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, light_ratio, reverse.x);
     light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, light_ratio, reverse.y);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
-    connection[0] = vec4(origin, light.distance);
-    connection[1] = vec4(light.to_light, 0.0);
+    // Aimed from where the ray starts: an emitter close by must not hide itself.
+    bool far = light.distance > 1e37;
+    vec3 way = far ? light.to_light : vertex.position_rs + light.to_light * light.distance - origin;
+    float distance = length(way);
+    connection[0] = vec4(origin, far ? light.distance : distance * (emitter.is_triangle ? 0.9999 : 1.0));
+    connection[1] = vec4(way / max(distance, 1e-30), 0.0);
     return max3(light_of_lobes[0]) + max3(light_of_lobes[1]) > 0.0;
 }
 

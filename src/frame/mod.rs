@@ -10,6 +10,7 @@ pub(crate) mod gbuffer;
 pub(crate) mod geometry;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
+pub(crate) mod octahedral;
 pub(crate) mod scene_data;
 pub(crate) mod textures;
 pub(crate) mod tonemap;

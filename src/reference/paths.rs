@@ -173,7 +173,6 @@ impl Paths {
             path_flags: self.flags.texels(WORD),
             path_hits: self.hits.texels(FLOATS),
             triangles: self.scene.triangles.clone(),
-            corner_normals: self.scene.corner_normals.clone(),
             corner_colors: self.scene.corner_colors.clone(),
             corner_texcoords: self.scene.corner_texcoords.clone(),
             corner_tangents: self.scene.corner_tangents.clone(),
