@@ -75,6 +75,8 @@ pub(crate) struct TracedScene {
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
     pub(crate) emitter_count: u32,
+    /// Whether lights may send out paths of their own.
+    pub(super) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
     pub(super) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
@@ -166,6 +168,7 @@ impl TracedScene {
                 .iter()
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
+            light_paths: facts.glossy && !emitters.is_empty(),
             power,
             buffers,
         })
@@ -175,7 +178,7 @@ impl TracedScene {
     /// Whether lights send out paths of their own: where something glossy may gather their light, and more than direct light is
     /// asked for. The sky alone does not: camera paths find it.
     pub(super) fn needs_light_paths(&self, bounces: Option<u32>) -> bool {
-        self.facts.glossy && self.emitter_count > 0 && bounces != Some(0)
+        self.light_paths && bounces != Some(0)
     }
 
     /// Device memory, bytes.

@@ -77,6 +77,14 @@ impl PathTracer {
         Ok(())
     }
 
+    /// Lets the lights of the prepared scene send out paths or not, whatever it contains: the expectation is the same. Only where
+    /// something scatters specularly do paths carry what their weights need.
+    #[cfg(test)]
+    pub(crate) fn set_light_paths(&mut self, wanted: bool) {
+        let scene = self.scene.as_mut().expect("prepared before it is changed");
+        scene.light_paths = wanted && scene.facts.specular && scene.emitter_count > 0;
+    }
+
     /// The picture that a request asks for of the prepared scene.
     pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
