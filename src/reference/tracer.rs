@@ -169,10 +169,11 @@ impl PathTracer {
             loop {
                 let mut graph = Graph::new(&mut self.store);
                 let paths = Paths::declare(&mut graph, scene, view, capacity);
-                let sums = Sums::declare(&mut graph, &wave);
+                // What is added to later: memory that a submission does not name is returned.
+                let _sums = Sums::declare(&mut graph, &wave);
                 if depth == 0 {
                     if done == 0 {
-                        sums.clear(&mut graph, &paths);
+                        graph.fill_buffer("path/clear-radiance", paths.radiance, 0);
                     }
                     camera_paths::generate(&mut graph, &paths, view, &wave);
                 }
@@ -190,6 +191,9 @@ impl PathTracer {
             let mut graph = Graph::new(&mut self.store);
             let paths = Paths::declare(&mut graph, scene, view, capacity);
             let sums = Sums::declare(&mut graph, &wave);
+            if done == 0 {
+                sums.clear(&mut graph);
+            }
             sums.add(&mut graph, &paths, &wave);
             graph.want_buffer(paths.radiance);
             let last = done + wave.sample_count == count;
