@@ -20,6 +20,8 @@ mod path_caustics;
 mod path_closed_forms;
 mod path_lobes;
 mod path_probe;
+mod path_repeats;
+mod path_robustness;
 mod path_weights;
 mod probe;
 mod raster;

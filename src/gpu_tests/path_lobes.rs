@@ -9,7 +9,7 @@ use super::session::Session;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Material, Projection, Scene};
 
-const SIZE: [u32; 2] = [48, 48];
+const SIZE: [u32; 2] = [64, 64];
 
 /// What surrounds the object, at a radiance of 1.
 #[derive(Clone, Copy, PartialEq)]
@@ -71,8 +71,11 @@ fn what_absorbs_nothing_is_not_seen() {
             let off = (mean(&image).x - 1.0).abs();
             println!("{what}: mean {off:.1e} ± {:.1e} off, worst pixel {worst:.1e}", noise(&traced));
             assert!(off < (4.0 * noise(&traced)).max(1e-3), "{what}: the mean is {off} off");
-            // No path that leaves the scene knows a weight.
-            assert!(kind == Furnace::Walls || worst < 0.01, "{what}: a pixel is {worst} off");
+            // No path that leaves the scene knows a weight; inside a solid roulette ends some.
+            assert!(
+                kind == Furnace::Walls || worst < 0.01 || material.thickness > 0.0,
+                "{what}: a pixel is {worst} off"
+            );
         }
     }
 }
@@ -82,7 +85,7 @@ fn no_lobe_makes_light() {
     let session = Session::open();
     let mut tracer = Tracer::new(&session);
     let mut materials: Vec<(String, Material)> = Vec::new();
-    for roughness in [0.0, 0.2, 0.45, 0.8, 1.0] {
+    for roughness in [0.0, 0.45, 1.0] {
         materials.push((format!("metal of roughness {roughness}"), metal(1.0, roughness)));
         materials.push((format!("plastic of roughness {roughness}"), Material { roughness, ..Material::default() }));
         materials.push((format!("thin glass of roughness {roughness}"), glass(0.0, roughness)));
@@ -93,8 +96,8 @@ fn no_lobe_makes_light() {
     for (what, material) in &materials {
         let max_diffuse = (1.0 - material.metallic) * (1.0 - material.transmission);
         for smooth in [false, true] {
-            let [sky, walls] = [Furnace::Sky, Furnace::Walls]
-                .map(|kind| trace(&mut tracer, &furnace(kind, material, smooth), 4));
+            let [sky, walls] =
+                [Furnace::Sky, Furnace::Walls].map(|kind| trace(&mut tracer, &furnace(kind, material, smooth), 4));
             let image = sky.image();
             let most = image.iter().map(|pixel| pixel.max_element()).fold(0.0, f64::max);
             let [a, b] = [&sky, &walls].map(|traced| mean(&traced.image()).x);
@@ -103,7 +106,7 @@ fn no_lobe_makes_light() {
             println!("{what}, {faces}: sky {a:.4}, walls {b:.4} ± {noise:.1e}, brightest pixel {most:.3}");
             // The diffuse lobe under a specular one is Schlick's by the half vector, which at grazing angles adds up to more than 1.
             assert!(a < 1.001 || max_diffuse > 0.0, "{what}, {faces}: {a} comes out of 1");
-            if (a - b).abs() >= (4.0 * noise).max(0.002) { println!("FAIL"); } assert!(true, "{what}, {faces}: {a} by the sky, {b} by the walls");
+            assert!((a - b).abs() < (4.0 * noise).max(0.002), "{what}, {faces}: {a} by the sky, {b} by the walls");
         }
     }
 }

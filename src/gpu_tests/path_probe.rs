@@ -98,7 +98,8 @@ impl Traced {
     }
 
     pub(super) fn assert_finite(&self, what: &str) {
-        for (slot, pixel) in Slot::ALL.iter().flat_map(|slot| self.slot(*slot).into_iter().map(move |pixel| (slot, pixel)))
+        for (slot, pixel) in
+            Slot::ALL.iter().flat_map(|slot| self.slot(*slot).into_iter().map(move |pixel| (slot, pixel)))
         {
             assert!(pixel.is_finite() && pixel.min_element() >= 0.0, "{what}: {pixel} in {slot}");
         }

@@ -67,8 +67,9 @@ fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp
     let scene = scene(material.clone(), thing, lamp);
     let camera = view(DVec3::new(-0.4, 2.0, 3.2), DVec3::new(0.0, 0.7, -0.6));
     let [with, without] = [true, false].map(|light_paths| {
-        let samples = samples[usize::from(!light_paths)] * std::env::var("HEAVY").map_or(1, |v| v.parse::<u32>().unwrap());
-        let ask = Ask { light_paths: Some(light_paths), bounces: Some(4), ..Ask::new([80, 80], samples, camera.clone()) };
+        let samples = samples[usize::from(!light_paths)];
+        let ask =
+            Ask { light_paths: Some(light_paths), bounces: Some(4), ..Ask::new([80, 80], samples, camera.clone()) };
         tracer.trace(&scene, &ask)
     });
     let mut failures = Vec::new();
@@ -79,13 +80,16 @@ fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp
         let off = (a - b).abs().max_element();
         println!(
             "{thing:?}, {lamp:?}, {slot}: {:.5} ± {sure_a:.1e} with, {:.5} ± {sure_b:.1e} without: {:+.2} %, {:.1} σ",
-            a.x, b.x, 100.0 * (a.x / b.x - 1.0), (a.x - b.x) / noise
+            a.x,
+            b.x,
+            100.0 * (a.x / b.x - 1.0),
+            (a.x - b.x) / noise
         );
-        if off > (4.0 * noise).max(0.002 * b.max_element()) || noise > 0.015 * b.max_element().max(1e-3) {
+        if off > (5.0 * noise).max(0.002 * b.max_element()) || !off.is_finite() {
             failures.push(slot);
         }
     }
-    if !failures.is_empty() { println!("FAIL {thing:?} of {material:?} under {lamp:?}: {failures:?}"); }
+    assert!(failures.is_empty(), "{thing:?} of {material:?} under {lamp:?}: {failures:?}");
 }
 
 #[test]
@@ -94,10 +98,10 @@ fn rough_metal_sends_the_same_light_either_way() {
     let mut tracer = Tracer::new(&session);
     let metal = |roughness| Material { metallic: 1.0, roughness, ..lambert([0.9, 0.7, 0.5]) };
     for lamp in [Lamp::Point, Lamp::Spot, Lamp::Sun, Lamp::Panel, Lamp::Sheet] {
-        assert_agreement(&mut tracer, &metal(0.45), Thing::FlatBox, lamp, [3, 12]);
+        assert_agreement(&mut tracer, &metal(0.45), Thing::FlatBox, lamp, [6, 24]);
     }
-    assert_agreement(&mut tracer, &metal(0.6), Thing::SmoothSphere, Lamp::Point, [3, 12]);
-    assert_agreement(&mut tracer, &metal(0.4), Thing::SmoothSphere, Lamp::Panel, [3, 12]);
+    assert_agreement(&mut tracer, &metal(0.6), Thing::SmoothSphere, Lamp::Point, [6, 24]);
+    assert_agreement(&mut tracer, &metal(0.4), Thing::SmoothSphere, Lamp::Panel, [6, 24]);
 }
 
 #[test]
@@ -106,7 +110,7 @@ fn glossy_plastic_sends_the_same_light_either_way() {
     let mut tracer = Tracer::new(&session);
     let plastic = Material { roughness: 0.45, base_color: [0.3, 0.6, 0.8, 1.0], ior: 2.0, ..Material::default() };
     for (thing, lamp) in [(Thing::FlatBox, Lamp::Spot), (Thing::SmoothSphere, Lamp::Panel)] {
-        assert_agreement(&mut tracer, &plastic, thing, lamp, [3, 12]);
+        assert_agreement(&mut tracer, &plastic, thing, lamp, [6, 24]);
     }
 }
 
@@ -124,9 +128,11 @@ fn rough_glass_sends_the_same_light_either_way() {
         ..Material::default()
     };
     for thickness in [0.0, 1.0] {
-        for (thing, lamp) in [(Thing::FlatBox, Lamp::Point), (Thing::SmoothSphere, Lamp::Panel), (Thing::FlatBox, Lamp::Sun)] {
+        for (thing, lamp) in
+            [(Thing::FlatBox, Lamp::Point), (Thing::SmoothSphere, Lamp::Panel), (Thing::FlatBox, Lamp::Sun)]
+        {
             println!("thickness {thickness}");
-            assert_agreement(&mut tracer, &glass(thickness), thing, lamp, [4, 16]);
+            assert_agreement(&mut tracer, &glass(thickness), thing, lamp, [6, 24]);
         }
     }
 }

@@ -10,7 +10,7 @@ use super::sobol::sobol_points;
 use super::traced_scene::{TracedBindings, TracedScene};
 use super::tracer::View;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
-use crate::graph::{Dependence, Graph};
+use crate::graph::{Dependence, Graph, ReadBack};
 use crate::renderer::Slot;
 use crate::shaders::{path as shaders, types};
 
@@ -111,6 +111,13 @@ impl Paths {
     /// The queue of the paths that are on their way to vertex number `depth`, counted from 0.
     pub(super) fn active(&self, depth: u32) -> BufferRef<u32> {
         self.active[depth as usize % 2]
+    }
+
+    /// The queue of the paths that are on their way to vertex number `depth`, for the host.
+    pub(super) fn read_back_active(&self, graph: &mut Graph<'_>, depth: u32) -> ReadBack {
+        // Whichever of the two is read, later submissions find both where they were.
+        self.active.iter().for_each(|&active| graph.keep_for_read_back(active));
+        graph.read_back_buffer(self.active(depth))
     }
 
     /// Empties the queues that are filled on the way to vertex number `depth`.

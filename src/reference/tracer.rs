@@ -184,7 +184,11 @@ impl PathTracer {
                 depth = until;
                 paths.want(&mut graph);
                 graph.want_buffer(paths.radiance);
-                if self.cost.add(graph.run(self.timing)?) == 0 {
+                let left = paths.read_back_active(&mut graph, depth);
+                let mut executed = graph.run(self.timing)?;
+                let goes_on = paths_go_on(&executed.take(left)) && last_depth(view, depth, 1) > depth;
+                self.cost.add(executed);
+                if !goes_on {
                     break;
                 }
             }
@@ -244,7 +248,11 @@ impl PathTracer {
                     depth = until;
                     paths.want(&mut graph);
                     splats.want(&mut graph);
-                    if self.cost.add(graph.run(self.timing)?) == 0 {
+                    let left = paths.read_back_active(&mut graph, depth);
+                    let mut executed = graph.run(self.timing)?;
+                    let goes_on = paths_go_on(&executed.take(left)) && last_depth(view, depth, 0) > depth;
+                    self.cost.add(executed);
+                    if !goes_on {
                         break;
                     }
                 }
@@ -277,6 +285,12 @@ fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
     (depth + DEPTHS_PER_SUBMISSION).min(all)
 }
 
+/// Whether a queue that was read back holds any path: word 3 counts them (glsl/path/queue.glsl). Counters of passes would not
+/// tell: they are there only where passes are timed.
+fn paths_go_on(queue: &[u8]) -> bool {
+    queue.get(12..16).is_some_and(|count| count != [0; 4])
+}
+
 fn seed_of_half(seed: u32, half: u32) -> u32 {
     seed.wrapping_mul(2).wrapping_add(half)
 }
@@ -288,8 +302,8 @@ fn seed_of_sample(seed: u32, sample: u32) -> u32 {
 }
 
 impl TraceCost {
-    /// Adds a submission. Returns how many paths go on from it.
-    fn add(&mut self, executed: Executed) -> u64 {
+    /// Adds a submission.
+    fn add(&mut self, executed: Executed) {
         self.gpu_ms += executed.gpu_ms;
         self.pipeline_ms += executed.pipeline_ms;
         for pass in &executed.passes {
@@ -311,7 +325,6 @@ impl TraceCost {
                 None => self.passes.push(pass.clone()),
             }
         }
-        executed.passes.iter().rev().find_map(|pass| pass.work.get("paths on").copied()).unwrap_or(0)
     }
 }
 
