@@ -84,7 +84,7 @@ fn assert_slab(tracer: &mut Tracer, what: &str, slab: &Material, thickness: f64,
     let albedo = 0.02;
     let mut scene = under_a_slab(slab.clone(), thickness, lambert([albedo as f32; 3]));
     add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::NEG_Y, [5.0; 3]);
-    let below = Ask::new([96, 96], 4, down(DVec3::new(0.0, 0.4, 0.0), 0.6));
+    let below = Ask::new([96, 96], 10, down(DVec3::new(0.0, 0.4, 0.0), 0.6));
     let traced = tracer.trace(&scene, &below);
     let expected = transmittance * (5.0 * albedo * FRAC_1_PI);
     println!("standard error {:.1e}", traced.error(Slot::Caustics) / expected.x);
