@@ -128,6 +128,10 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
         uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
         arriving *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     }
+    if (TRANSMISSIVE != 0u && side < 0.0) {
+        // Radiance changes by the square of the ratio of indices, as in scatter.
+        arriving /= vertex.matter.relative_ior * vertex.matter.relative_ior;
+    }
     light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, light_ratio, reverse.x);
     light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, light_ratio, reverse.y);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);

@@ -43,11 +43,10 @@ impl Sums {
         Sums(sums)
     }
 
-    /// Starts from zero.
-    pub(super) fn clear(&self, graph: &mut Graph<'_>, paths: &Paths) {
-        graph.fill_buffer("path/clear-radiance", paths.radiance, 0);
+    /// Starts from zero. In the submission that adds first: what a submission leaves for a later one is lost if that one uses its
+    /// memory in a new way.
+    pub(super) fn clear(&self, graph: &mut Graph<'_>) {
         graph.fill_buffer("path/clear-sums", self.0, 0);
-        graph.want_buffer(self.0);
     }
 
     pub(super) fn read_back(&self, graph: &mut Graph<'_>) -> ReadBack {

@@ -82,6 +82,8 @@ pub(crate) struct TracedScene {
     pub(crate) emissive_count: u32,
     /// From a triangle's density among all lights to that among emissive triangles.
     pub(crate) emissive_density_scale: f32,
+    /// Whether lights may send out paths of their own.
+    pub(super) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
     pub(super) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
@@ -186,6 +188,7 @@ impl TracedScene {
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
+            light_paths: facts.glossy && !emitters.is_empty(),
             power,
             buffers,
         })
@@ -195,7 +198,7 @@ impl TracedScene {
     /// Whether lights send out paths of their own: where something glossy may gather their light, and more than direct light is
     /// asked for. The sky alone does not: camera paths find it.
     pub(super) fn needs_light_paths(&self, bounces: Option<u32>) -> bool {
-        self.facts.glossy && self.emitter_count > 0 && bounces != Some(0)
+        self.light_paths && bounces != Some(0)
     }
 
     /// Device memory, bytes.

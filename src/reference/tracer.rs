@@ -76,6 +76,14 @@ impl PathTracer {
         self.scene = None;
     }
 
+    /// Lets the lights of the scene send out paths or not, whatever it contains: the expectation is the same. Only where something
+    /// scatters specularly do paths carry what their weights need.
+    #[cfg(test)]
+    pub(crate) fn set_light_paths(&mut self, wanted: bool) {
+        let scene = self.scene.as_mut().and_then(Arc::get_mut).expect("a scene that nobody else holds");
+        scene.light_paths = wanted && scene.facts.specular && scene.emitter_count > 0;
+    }
+
     /// The picture that a request asks for of the scene.
     pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
@@ -160,10 +168,11 @@ impl PathTracer {
             loop {
                 let mut graph = Graph::new(&mut self.store);
                 let paths = Paths::declare(&mut graph, scene, view, capacity);
-                let sums = Sums::declare(&mut graph, &wave);
+                // What is added to later: memory that a submission does not name is returned.
+                let _sums = Sums::declare(&mut graph, &wave);
                 if depth == 0 {
                     if done == 0 {
-                        sums.clear(&mut graph, &paths);
+                        graph.fill_buffer("path/clear-radiance", paths.radiance, 0);
                     }
                     camera_paths::generate(&mut graph, &paths, view, &wave);
                 }
@@ -181,6 +190,9 @@ impl PathTracer {
             let mut graph = Graph::new(&mut self.store);
             let paths = Paths::declare(&mut graph, scene, view, capacity);
             let sums = Sums::declare(&mut graph, &wave);
+            if done == 0 {
+                sums.clear(&mut graph);
+            }
             sums.add(&mut graph, &paths, &wave);
             graph.want_buffer(paths.radiance);
             let last = done + wave.sample_count == count;
