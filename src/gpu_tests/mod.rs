@@ -24,4 +24,5 @@ mod robustness;
 mod scenes;
 mod session;
 mod skipping;
+mod sppm;
 mod tonemap;

@@ -75,6 +75,10 @@ pub(crate) struct TracedScene {
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
     pub(crate) emitter_count: u32,
+    /// Some light ends at a range, so that paths from it are none.
+    pub(super) ranged_lights: bool,
+    /// Of all triangles, m².
+    pub(super) area: f64,
     /// What all lights but the sky send out, W (luminance).
     pub(super) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
@@ -166,6 +170,8 @@ impl TracedScene {
                 .iter()
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
+            ranged_lights: lights.iter().any(|light| light.range.is_some()),
+            area: triangles.iter().map(TracedTriangle::area).sum(),
             power,
             buffers,
         })
