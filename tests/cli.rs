@@ -105,6 +105,46 @@ fn wrong_usage_is_status_2() {
 }
 
 #[test]
+fn wrong_usage_of_references_is_status_2() {
+    assert_wrong_usage(&["reference"], &["SCENE"]);
+    assert_wrong_usage(&["reference", "ring"], &["--spp"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "0"], &["--spp"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--estimator", "magic"], &["path", "sppm"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--filter", "wide"], &["center", "box"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "-o", "a.png"], &[".exr"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--shard", "1/4"], &["--output"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--shard", "5/4", "-o", "a.exr"], &["I/N"]);
+    assert_wrong_usage(&["reference", "ring", "--spp", "16", "--noise", "0%"], &["percentage"]);
+    assert_wrong_usage(&["reference", "ring", "--merge", "a.exr"], &["--merge"]);
+    assert_wrong_usage(&["reference", "--merge", "a.exr", "--no-cache"], &["-o FILE.exr"]);
+    assert_wrong_usage(&["reference", "--list", "--clear", "all"], &["--clear"]);
+    assert_wrong_usage(&["reference", "--clear", "ring"], &["hexadecimal"]);
+    assert_wrong_usage(&["bench", "ring", "--reference", "0"], &["--reference"]);
+    assert_wrong_usage(&["bench", "ring", "--no-cache"], &["--reference"]);
+}
+
+#[test]
+fn the_cache_of_references_is_listed_and_cleared_without_a_device() {
+    let folder = folder("references");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+        command.arg("reference").args(arguments).env("IRRADIA_CACHE_DIR", folder.join("none")).output().expect("starts")
+    };
+    let listed = run(&["--list"]);
+    assert!(listed.status.success() && String::from_utf8_lossy(&listed.stdout).contains("no reference in"));
+    assert!(run(&["--clear", "all"]).status.success());
+    let unknown = run(&["--clear", "0123abcd"]);
+    assert_eq!(unknown.status.code(), Some(1));
+    assert!(stderr(&unknown).contains("0123abcd") && stderr(&unknown).contains("--list"), "{}", stderr(&unknown));
+    let text_file = folder.join("a.exr");
+    fs::write(&text_file, "no image").expect("the test's own folder");
+    let merged = run(&["--merge", text(&text_file)]);
+    assert_eq!(merged.status.code(), Some(1));
+    assert!(stderr(&merged).contains("cannot be used as a reference"), "{}", stderr(&merged));
+    assert_eq!(names_in(&folder), ["a.exr"], "nothing was made");
+}
+
+#[test]
 fn names_that_do_not_exist_list_those_that_do() {
     assert_wrong_usage(&["render", "ring", "-o", "a.exr", "--technique", "magic"], &["magic", "direct", "rsm"]);
     assert_wrong_usage(&["bench", "ring", "--technique", "rsm,magic"], &["magic", "direct", "rsm", "all"]);
@@ -293,4 +333,33 @@ fn a_failing_scene_does_not_stop_the_bench() {
     assert!(fs::read_to_string(&md).expect("written").contains("| pass |"));
     let pictures = report.runs.iter().map(|run| format!("{}-{}-default.png", run.scene, run.technique));
     assert_eq!(names_in(&images), pictures.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_bench_says_how_far_techniques_are_from_references() {
+    let folder = folder("bench-reference");
+    let (json, cache) = (folder.join("a.json"), folder.join("cache"));
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_irradia"));
+        let output = command.args(arguments).env("IRRADIA_CACHE_DIR", &cache).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    let measured = ["--technique", "direct,rsm", "--frames", "1", "--warmup", "0", "--size", "32x24"];
+    let tables =
+        run(&[&["bench", "cornell-point"], &measured[..], &["--reference", "16", "--json", text(&json)]].concat());
+    assert!(tables.contains("rrmse") && tables.contains("covered"), "{tables}");
+    let report: Report = serde_json::from_str(&fs::read_to_string(&json).expect("written")).expect("the schema");
+    let [direct, rsm] = &report.runs[..] else { panic!("{} runs", report.runs.len()) };
+    let bounces = [direct, rsm].map(|run| run.reference.as_ref().and_then(|reference| reference.bounces));
+    assert_eq!(bounces, [Some(0), Some(1)]);
+    assert!(rsm.reference_full.as_ref().is_some_and(|full| full.bounces.is_none() && full.spp == 16));
+    let rrmse = |run: &irradia::bench::report::Run, part: &str| run.error.as_ref().expect("compared")[part].rrmse;
+    assert!(rrmse(direct, "direct") < 0.2, "both are the same light: {}", rrmse(direct, "direct"));
+    assert!(rsm.error_full.as_ref().is_some_and(|errors| errors["image"].rrmse < 1.0));
+    assert_eq!(names_in(&cache).len(), 3, "one without, one with one bounce, one without limit");
+    let made = run(&["reference", "cornell-point", "--spp", "16", "--size", "32x24"]);
+    assert!(made.contains("16 samples per pixel") && made.contains("rays/s"), "{made}");
+    assert_eq!(names_in(&cache).len(), 3, "the bench made this one");
+    assert!(run(&["reference", "--list"]).contains("cornell-point"));
 }

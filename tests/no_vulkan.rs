@@ -18,7 +18,7 @@ fn folder(test: &str) -> PathBuf {
 fn assert_all_fail(test: &str, variables: &[(&str, &Path)], arguments: &[&str], words: &[&str]) {
     let folder = folder(test);
     let file = |name: &str| folder.join(name).to_string_lossy().into_owned();
-    let commands: [&[&str]; 4] = [
+    let commands: [&[&str]; 5] = [
         &["render", "cornell-point", "-o", &file("a.exr")],
         &["render", "cornell-point", "-o", &file("a.png"), "--frames", "0..2"],
         &[
@@ -33,6 +33,7 @@ fn assert_all_fail(test: &str, variables: &[(&str, &Path)], arguments: &[&str], 
             &file("images"),
         ],
         &["graph", "cornell-point", "--dot", &file("a.dot")],
+        &["reference", "cornell-point", "--spp", "16", "--no-cache", "-o", &file("a.exr")],
     ];
     for command in commands {
         let mut program = Command::new(env!("CARGO_BIN_EXE_irradia"));

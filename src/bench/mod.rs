@@ -2,16 +2,22 @@
 //!
 //! ```text
 //! run ──▶ samples ──▶ report ──▶ rows ──▶ text · markdown · csv
-//!         (one technique's frames) (JSON)  (what a table says)
+//!  │      (one technique's frames) ▲ (JSON)  (what a table says)
+//!  └────▶ errors ─────────────────┘
+//!         (against references)
 //! ```
 
 pub mod comparison;
+mod error_rows;
+mod errors;
 pub mod report;
 pub mod rows;
 mod run;
 mod samples;
 pub mod statistics;
+pub mod sweep;
 pub mod tables;
 mod units;
 
-pub use run::{Finished, Options, PICTURE_TONE_MAP, Subject, run};
+pub use errors::{ErrorsUnknown, References};
+pub use run::{Finished, Options, PICTURE_TONE_MAP, SlotImages, Subject, run};

@@ -131,6 +131,12 @@ pub struct Run {
     pub error: Option<BTreeMap<String, ImageErrors>>,
     /// The same against full light transport.
     pub error_full: Option<BTreeMap<String, ImageErrors>>,
+    /// The reference of full light transport; null if there is none.
+    pub reference_full: Option<Reference>,
+    /// The relative noise (root mean square over mean) of the parts of `reference` that `error` is about.
+    pub noise: Option<BTreeMap<String, f64>>,
+    /// The same of `reference_full` and `error_full`.
+    pub noise_full: Option<BTreeMap<String, f64>>,
 }
 
 /// One pass of a run.
@@ -233,7 +239,7 @@ mod tests {
         has(&run["passes"][0], &["piece", "pass", "ms", "share", "skipped", "work"]);
         assert!(run["passes"][0]["skipped"].is_null());
         assert!(run["passes"].as_array().expect("a list").iter().any(|pass| pass["skipped"].is_string()));
-        for null in ["reference", "error", "error_full"] {
+        for null in ["reference", "error", "error_full", "reference_full", "noise", "noise_full"] {
             assert!(run[null].is_null(), "{null}");
         }
         has(&run["methods"], &["emission", "direct", "diffuse", "caustics", "specular"]);

@@ -1,8 +1,11 @@
 //! The rounds: every contender renders in every round, in turn, so that drift of the machine hits all alike.
 
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
 use super::report::{Failure, Run};
 use super::samples::Samples;
-use crate::renderer::{Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
+use crate::renderer::{ColorImage, Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
 use crate::scene::{CameraView, Scene};
 
 /// How the contenders' pictures are tone-mapped.
@@ -30,14 +33,24 @@ pub struct Options {
     pub frames: u32,
     /// Frames of each contender before the rounds, after its first one.
     pub warmup: u32,
+    /// A contender begins no frame of warm-up and no round after it has rendered for this long, seconds; its first round it
+    /// always has. `None`: all of them.
+    pub max_seconds: Option<f64>,
     /// Whether a picture is wanted of every contender, made after the rounds.
     pub pictures: bool,
+    /// Whether the slots that a contender fills are wanted as images, made after the rounds.
+    pub slots: bool,
 }
 
 impl Options {
     /// The frames that one contender renders for its timings.
     pub fn frames_per_contender(&self) -> u64 {
         1 + u64::from(self.warmup) + 3 * u64::from(self.frames)
+    }
+
+    /// Whether a contender that has rendered for so long has had its time.
+    fn over(&self, rendered: Duration) -> bool {
+        self.max_seconds.is_some_and(|seconds| rendered.as_secs_f64() > seconds)
     }
 }
 
@@ -48,6 +61,17 @@ pub struct Finished {
     pub run: Run,
     /// The tone-mapped picture, if pictures were wanted.
     pub picture: Option<Vec<[u8; 3]>>,
+    /// The image and the slots that its methods fill, if they were wanted.
+    pub images: Option<SlotImages>,
+}
+
+/// The radiance that a contender found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlotImages {
+    /// The sum of all slots.
+    pub image: ColorImage,
+    /// The slots that its methods fill; emission is always one.
+    pub slots: BTreeMap<Slot, ColorImage>,
 }
 
 /// One set of settings and what became of it.
@@ -57,6 +81,8 @@ type Outcome = Result<Finished, Failure>;
 struct Contender {
     settings: Settings,
     state: Result<(Renderer, Samples), String>,
+    /// Host time of all its frames.
+    rendered: Duration,
 }
 
 /// Measures `contenders` on one scene. Each has a renderer of its own, all alive at once. First each renders one frame
@@ -78,8 +104,8 @@ pub fn run(
     for contender in &mut contenders {
         contender.proceed(|renderer, samples| warm_up(renderer, samples, subject, options, progress));
     }
-    for _ in 0..options.frames {
-        for contender in &mut contenders {
+    for index in 0..options.frames {
+        for contender in contenders.iter_mut().filter(|contender| index == 0 || !options.over(contender.rendered)) {
             contender.proceed(|renderer, samples| round(renderer, samples, subject, options, progress));
         }
     }
@@ -93,15 +119,17 @@ impl Contender {
     fn new(context: &Context, settings: &Settings) -> Contender {
         let renderer = Renderer::new(context, settings.clone());
         let state = renderer.map(|renderer| (renderer, Samples::default())).map_err(|error| sentence(&error));
-        Contender { settings: settings.clone(), state }
+        Contender { settings: settings.clone(), state, rendered: Duration::ZERO }
     }
 
     /// Renders on unless the contender has failed before.
     fn proceed(&mut self, step: impl FnOnce(&mut Renderer, &mut Samples) -> Result<(), Stopped>) {
         let Ok((renderer, samples)) = &mut self.state else { return };
+        let start = Instant::now();
         if let Err(error) = step(renderer, samples) {
             self.state = Err(sentence(&*error));
         }
+        self.rendered += start.elapsed();
     }
 
     fn finish(self, subject: &Subject<'_>, options: &Options) -> Outcome {
@@ -113,15 +141,19 @@ impl Contender {
             error,
         };
         let (mut renderer, samples) = self.state.map_err(failure)?;
-        let picture = if options.pictures {
+        let (picture, images) = if options.pictures || options.slots {
+            let filled = Slot::ALL.into_iter().filter(|slot| options.slots && settings.methods.fills(*slot));
             let request = FrameRequest {
-                tonemap: Some(PICTURE_TONE_MAP),
+                slots: filled.collect(),
+                tonemap: options.pictures.then_some(PICTURE_TONE_MAP),
                 read_back: true,
                 ..request(subject, options, Timing::Frame)
             };
-            renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?.display
+            let Frame { image, slots, display, .. } =
+                renderer.render(subject.scene, &request).map_err(|error| failure(sentence(&error)))?;
+            (display, image.filter(|_| options.slots).map(|image| SlotImages { image, slots }))
         } else {
-            None
+            (None, None)
         };
         let methods = Slot::ALL.into_iter().map(|slot| (slot, settings.methods.name_of(slot).to_owned()));
         let run = samples.finish(Run {
@@ -136,7 +168,7 @@ impl Contender {
             load_ms: subject.load_ms,
             ..Run::default()
         });
-        Ok(Finished { run, picture })
+        Ok(Finished { run, picture, images })
     }
 }
 
@@ -148,8 +180,12 @@ fn warm_up(
     options: &Options,
     progress: &mut dyn FnMut(),
 ) -> Result<(), Stopped> {
+    let start = Instant::now();
     samples.add_first(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
     for index in 0..options.warmup {
+        if options.over(start.elapsed()) {
+            break;
+        }
         renderer.invalidate();
         let timing = if index % 2 == 0 { Timing::Passes } else { Timing::Frame };
         samples.add_warmup(&render(renderer, subject, options, timing, progress)?.timings);

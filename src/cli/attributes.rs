@@ -1,7 +1,7 @@
 //! What a picture's file says of how it was made.
 
 use irradia::output::Attributes;
-use irradia::renderer::{DeviceReport, Settings, Slot, ToneMap};
+use irradia::renderer::{DeviceReport, Estimate, Settings, Slot, ToneMap};
 use serde_json::{Map, Value};
 
 use super::values;
@@ -16,6 +16,10 @@ pub(crate) struct Picture<'a> {
     pub(crate) device: &'a DeviceReport,
     /// How its pixels were made; `None` for radiance.
     pub(crate) tonemap: Option<ToneMap>,
+    /// Pixels along each side that were averaged into one.
+    pub(crate) aa: u32,
+    /// How its slots were sampled, if they were.
+    pub(crate) estimate: Option<&'a Estimate>,
 }
 
 impl Picture<'_> {
@@ -39,7 +43,22 @@ impl Picture<'_> {
             ("driver", self.device.driver.clone()),
             ("api", self.device.api.clone()),
         ];
+        let mut sampled = Vec::new();
+        if let Some(estimate) = self.estimate {
+            let samples = f64::from(estimate.spp * self.aa * self.aa) * f64::from(width) * f64::from(height);
+            let seconds = estimate.seconds.max(1e-9);
+            sampled.push(("spp".to_owned(), estimate.spp.to_string()));
+            sampled.push(("samples_per_second".to_owned(), (samples / seconds).to_string()));
+            sampled.push(("rays_per_second".to_owned(), (estimate.rays as f64 / seconds).to_string()));
+            for (part, noise) in &estimate.noise {
+                sampled.push((format!("noise.{part}.rmse"), noise.rmse.to_string()));
+                sampled.push((format!("noise.{part}.rrmse"), noise.rrmse.to_string()));
+            }
+        }
+        if self.aa > 1 {
+            sampled.push(("aa".to_owned(), self.aa.to_string()));
+        }
         let tonemap = self.tonemap.map(|map| ("tonemap", values::tone_map_name(map).to_owned()));
-        attributes.into_iter().chain(tonemap).map(|(name, value)| (name.to_owned(), value)).collect()
+        attributes.into_iter().chain(tonemap).map(|(name, value)| (name.to_owned(), value)).chain(sampled).collect()
     }
 }

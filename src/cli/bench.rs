@@ -7,14 +7,16 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use irradia::bench::report::{Failure, Report, Run};
-use irradia::bench::{Finished, Options, PICTURE_TONE_MAP, Subject, run as measure, tables};
+use irradia::bench::{ErrorsUnknown, Finished, Options, PICTURE_TONE_MAP, References, Subject, run as measure, tables};
 use irradia::output::{self, AtomicFile};
+use irradia::reference::Cache;
 use irradia::renderer::{Context, Preset, Settings, Technique};
 
 use super::attributes::Picture;
 use super::method_args::OptionArgs;
+use super::reference;
 use super::scene_args::SceneArgs;
-use super::terminal::Progress;
+use super::terminal::{Progress, Steps, Terminal};
 use super::values::{self, Choice};
 use super::{Invocation, files};
 
@@ -36,6 +38,12 @@ pub(crate) struct BenchArgs {
     /// Frames of each technique before the rounds, after its first, which is timed apart
     #[arg(long, value_name = "N", default_value_t = 2)]
     warmup: u32,
+    /// Samples per pixel of references by path tracing, to say how far each technique is from them
+    #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..))]
+    reference: Option<u32>,
+    /// Neither read nor write the cache of references
+    #[arg(long, requires = "reference")]
+    no_cache: bool,
     /// Write everything as JSON, schema irradia-bench/1
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -95,11 +103,13 @@ struct Bench<'a> {
     context: Context,
     contenders: Vec<Settings>,
     options: Options,
+    cache: Option<Cache>,
+    terminal: &'a Terminal,
 }
 
 impl Bench<'_> {
     /// Finds out what can go wrong before the first frame: devices, and files that could not be written.
-    fn new<'a>(args: &'a BenchArgs, invocation: &Invocation<'_>) -> Result<Bench<'a>> {
+    fn new<'a>(args: &'a BenchArgs, invocation: &Invocation<'a>) -> Result<Bench<'a>> {
         for path in [&args.json, &args.csv, &args.md].into_iter().flatten() {
             output::check_target(path)?;
         }
@@ -110,12 +120,14 @@ impl Bench<'_> {
             }
         }
         let pictures = args.images.is_some();
-        let options = Options { size: args.scene_args.size, frames: args.frames, warmup: args.warmup, pictures };
+        let (size, frames, warmup) = (args.scene_args.size, args.frames, args.warmup);
+        let options = Options { size, frames, warmup, max_seconds: None, pictures, slots: args.reference.is_some() };
+        let cache = args.reference.map_or(Ok(None), |_| reference::open_cache(args.no_cache))?;
         let context = invocation.context()?;
         if let Some(folder) = &args.images {
             fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
         }
-        Ok(Bench { args, context, contenders, options })
+        Ok(Bench { args, context, contenders, options, cache, terminal: invocation.terminal })
     }
 
     fn frames_per_scene(&self) -> u64 {
@@ -131,24 +143,41 @@ impl Bench<'_> {
         let name = if known { spec } else { &loaded.scene.name };
         let subject = Subject { name, scene: &loaded.scene, camera: &camera, load_ms: loaded.load_ms };
         let outcomes = measure(&self.context, &subject, &self.contenders, &self.options, &mut || progress.step());
+        let mut steps = Steps::new(self.terminal, &format!("reference of {name}"));
+        let mut references = self.args.reference.map(|spp| {
+            let show = |progress| steps.show(progress);
+            References::new(&self.context, &subject, self.options.size, spp, self.cache.as_ref(), show)
+        });
         let (mut runs, mut failures) = (Vec::new(), Vec::new());
         for (outcome, settings) in outcomes.into_iter().zip(&self.contenders) {
-            match outcome {
-                Ok(finished) => {
-                    if let Err(error) = self.write_picture(&finished, settings) {
-                        let (technique, preset) =
-                            (Some(finished.run.technique.clone()), Some(finished.run.preset.clone()));
-                        failures.push(Failure {
-                            scene: name.to_owned(),
-                            technique,
-                            preset,
-                            error: format!("{error:#}"),
-                        });
-                    }
-                    runs.push(finished.run);
+            let mut finished = match outcome {
+                Ok(finished) => finished,
+                Err(failure) => {
+                    failures.push(failure);
+                    continue;
                 }
-                Err(failure) => failures.push(failure),
+            };
+            let failure = |error: String| Failure {
+                scene: name.to_owned(),
+                technique: Some(settings.technique.name().to_owned()),
+                preset: Some(settings.preset.name().to_owned()),
+                error,
+            };
+            if let Some(made) = &mut references {
+                match made.compare(&mut finished, settings) {
+                    Ok(()) => {}
+                    Err(error @ ErrorsUnknown::Reference(_)) => {
+                        // It is the scene's failure, and that of all contenders to come.
+                        failures.push(Failure { technique: None, preset: None, ..failure(error.to_string()) });
+                        references = None;
+                    }
+                    Err(error) => failures.push(failure(format!("{:#}", anyhow::Error::from(error)))),
+                }
             }
+            if let Err(error) = self.write_picture(&finished, settings) {
+                failures.push(failure(format!("{error:#}")));
+            }
+            runs.push(finished.run);
         }
         Ok((runs, failures))
     }
@@ -166,6 +195,8 @@ impl Bench<'_> {
             settings,
             device: &device,
             tonemap: Some(PICTURE_TONE_MAP),
+            aa: 1,
+            estimate: None,
         };
         Ok(output::write_png(&path, run.size, pixels, &picture.attributes())?)
     }
@@ -181,7 +212,7 @@ fn write_reports(args: &BenchArgs, report: &Report) -> Result<()> {
     write(&args.md, &|| Ok(tables::markdown(report)))
 }
 
-fn write_text(path: &Path, text: &str) -> Result<()> {
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
     Ok(AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?)
 }
 

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use clap::Args;
+use irradia::reference::PixelFilter;
 use irradia::renderer::{
     CausticsMethod, DiffuseMethod, DirectMethod, Preset, Settings, Slot, SpecularMethod, Technique,
 };
@@ -24,12 +25,28 @@ pub(crate) struct OptionArgs {
     /// The method of the specular slot, instead of the technique's
     #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(SpecularMethod::NAMES))]
     specular: Option<String>,
+    /// Samples a pixel of traced paths, the same as --set path.spp=N
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    spp: Option<u32>,
+    /// Scatterings between the light and the first visible surface at most, for traced paths; 0: direct light alone [default: no limit]
+    #[arg(long, value_name = "N")]
+    bounces: Option<u32>,
+    /// Which of the equally good sequences of samples is taken
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Where in a pixel traced paths sample light [default: box for render --technique path, else center, as rasterisation does]
+    #[arg(long, value_name = "FILTER", value_parser = values::pixel_filter())]
+    filter: Option<PixelFilter>,
     /// A setting to change after the preset, repeatable
     #[arg(long, value_name = "PIECE.KEY=VALUE", value_parser = values::setting)]
     set: Vec<Setting>,
 }
 
 impl OptionArgs {
+    fn chooses_filter(&self) -> bool {
+        self.filter.is_some() || self.set.iter().any(|setting| setting.key == "path.filter")
+    }
+
     /// The settings of `technique` at `preset`, with what the arguments change.
     pub(crate) fn settings(&self, technique: Technique, preset: Preset) -> Result<Settings> {
         let mut settings = Settings::new(technique, preset);
@@ -44,8 +61,21 @@ impl OptionArgs {
                 settings.methods.set(slot, method)?;
             }
         }
+        let path = &mut settings.path;
+        path.spp = self.spp.unwrap_or(path.spp);
+        path.bounces = self.bounces.or(path.bounces);
+        path.seed = self.seed.unwrap_or(path.seed);
+        path.filter = self.filter.unwrap_or(path.filter);
         for Setting { key, value } in &self.set {
             settings.set(key, value)?;
+        }
+        if self.bounces.is_some() && settings.bounces() != self.bounces {
+            tracing::warn!(
+                "--bounces {} is for traced paths; {} has {} by its methods",
+                self.bounces.unwrap_or_default(),
+                technique.name(),
+                settings.bounces().map_or("no limit".to_owned(), |bounces| bounces.to_string()),
+            );
         }
         Ok(settings)
     }
@@ -69,5 +99,14 @@ impl MethodArgs {
     /// The settings that the arguments choose.
     pub(crate) fn settings(&self) -> Result<Settings> {
         self.options.settings(self.technique, self.preset)
+    }
+
+    /// The same, with pixels that are filtered where nothing but traced paths makes them.
+    pub(crate) fn settings_of_pictures(&self) -> Result<Settings> {
+        let mut settings = self.settings()?;
+        if self.technique == Technique::Path && !self.options.chooses_filter() {
+            settings.path.filter = PixelFilter::Box;
+        }
+        Ok(settings)
     }
 }

@@ -10,9 +10,11 @@ mod devices;
 mod files;
 mod graph;
 mod method_args;
+mod reference;
 mod render;
 mod scene_args;
 mod scenes;
+mod sweep;
 mod terminal;
 mod values;
 
@@ -71,7 +73,9 @@ enum ValidationChoice {
 enum Command {
     Render(render::RenderArgs),
     Bench(bench::BenchArgs),
+    Sweep(sweep::SweepArgs),
     Compare(compare::CompareArgs),
+    Reference(reference::ReferenceArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
     Devices(devices::DevicesArgs),
@@ -91,7 +95,9 @@ pub(crate) fn main() -> ExitCode {
     let done = match &cli.command {
         Command::Render(args) => render::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
+        Command::Sweep(args) => sweep::run(args, &invocation),
         Command::Compare(args) => compare::run(args, &invocation),
+        Command::Reference(args) => reference::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),

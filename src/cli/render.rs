@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
+use irradia::output::tonemap::tone_map;
 use irradia::output::{self, ImageFormat};
+use irradia::reference::IMAGE;
 use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
 use irradia::scene::CameraView;
 
@@ -32,6 +34,9 @@ pub(crate) struct RenderArgs {
     /// Slots that an EXR file holds besides the image, as layers: a list, or all
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::slot_choice())]
     slots: Vec<Choice<Slot>>,
+    /// Render N by N times the pixels and average them, with any technique
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
+    aa: u32,
     /// How a PNG's pixels are made from radiance [default: aces]
     #[arg(long, value_parser = values::tone_map())]
     tonemap: Option<ToneMap>,
@@ -59,7 +64,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     }
     let start = Instant::now();
     output::check_target(&path_of(args, args.frames.map_or(args.frame, |range| range.first)))?;
-    let settings = args.methods.settings()?;
+    let settings = args.methods.settings_of_pictures()?;
     let loaded = args.scene_args.open(&args.scene)?;
     let mut scene = loaded.scene;
     let context = invocation.context()?;
@@ -69,13 +74,15 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     let FrameRange { first, last } = args.frames.unwrap_or(FrameRange { first: args.frame, last: args.frame });
     let progress = (first < last).then(|| invocation.terminal.progress(u64::from(last - first) + 1));
     let mut spent = Spent::default();
+    let mut noise = String::new();
     for number in first..=last {
         scene.set_frame(number);
         let request = request(args, args.scene_args.view(&scene)?);
         let rendering = Instant::now();
-        let frame = renderer.render(&scene, &request)?;
+        let frame = reduced(renderer.render(&scene, &request)?, args);
         spent.render += rendering.elapsed().as_secs_f64();
 
+        noise = noise_of(&frame, args.aa);
         let camera = &request.camera.name;
         let picture = Picture {
             scene: &scene.name,
@@ -84,7 +91,9 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
             size: frame.size,
             settings: renderer.settings(),
             device: &device,
-            tonemap: request.tonemap,
+            tonemap: (format == ImageFormat::Png).then(|| args.tonemap.unwrap_or_default()),
+            aa: args.aa,
+            estimate: frame.estimate.as_ref(),
         };
         let writing = Instant::now();
         write(&path_of(args, number), format, &frame, &picture)?;
@@ -96,7 +105,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     drop(progress);
     let (names, [width, height]) = (written_names(args, first, last), args.scene_args.size);
     invocation.terminal.say(&format!(
-        "wrote {names} ({width}x{height}) in {:.2} s: scene {:.2} s, rendering {:.2} s, writing {:.2} s",
+        "wrote {names} ({width}x{height}) in {:.2} s: scene {:.2} s, rendering {:.2} s, writing {:.2} s{noise}",
         start.elapsed().as_secs_f64(),
         1e-3 * loaded.load_ms,
         spent.render,
@@ -106,16 +115,47 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
 }
 
 fn request(args: &RenderArgs, camera: CameraView) -> FrameRequest {
-    let png = args.output.format == ImageFormat::Png;
+    // Supersampled pixels are averaged before they are tone-mapped.
+    let display = args.output.format == ImageFormat::Png && args.aa == 1;
     FrameRequest {
-        size: args.scene_args.size,
+        size: args.scene_args.size.map(|side| side.saturating_mul(args.aa)),
         camera,
         slots: Choice::expand(&args.slots, &Slot::ALL),
-        image: !png,
-        tonemap: png.then(|| args.tonemap.unwrap_or_default()),
+        image: !display,
+        tonemap: display.then(|| args.tonemap.unwrap_or_default()),
         timing: Timing::Frame,
         read_back: true,
     }
+}
+
+/// The frame at the size asked for.
+fn reduced(mut frame: Frame, args: &RenderArgs) -> Frame {
+    if args.aa > 1 {
+        frame.size = args.scene_args.size;
+        frame.image = frame.image.map(|image| output::box_reduced(&image, args.aa));
+        for image in frame.slots.values_mut() {
+            *image = output::box_reduced(image, args.aa);
+        }
+        if args.output.format == ImageFormat::Png {
+            frame.display = frame.image.as_ref().map(|image| tone_map(image, args.tonemap.unwrap_or_default()));
+        }
+    }
+    frame
+}
+
+/// What a path-traced frame says of itself.
+fn noise_of(frame: &Frame, aa: u32) -> String {
+    let Some(estimate) = &frame.estimate else { return String::new() };
+    let pixels = f64::from(frame.size[0]) * f64::from(frame.size[1]);
+    let seconds = estimate.seconds.max(1e-9);
+    let noise =
+        estimate.noise.get(IMAGE).map_or(String::new(), |noise| format!(", noise {:.3} %", 100.0 * noise.rrmse));
+    format!(
+        "; {} samples a pixel, {:.3} M samples/s, {:.3} M rays/s{noise}",
+        estimate.spp,
+        1e-6 * pixels * f64::from(estimate.spp * aa * aa) / seconds,
+        1e-6 * estimate.rays as f64 / seconds,
+    )
 }
 
 fn path_of(args: &RenderArgs, frame: u32) -> PathBuf {

@@ -43,15 +43,7 @@ impl SceneArgs {
         if let Some(sky) = self.sky {
             scene.set_sky(sky);
         }
-        for warning in &scene.warnings {
-            tracing::warn!("{warning}");
-        }
-        if !scene.facts().lit() {
-            tracing::warn!(
-                "{} has no light and stays black; add one with --light sun:45,60 or --light point:X,Y,Z,W/sr, or a sky with --sky 1,1,1",
-                scene.name
-            );
-        }
+        warn_of(&scene, "add one with --light sun:45,60 or --light point:X,Y,Z,W/sr, or a sky with --sky 1,1,1");
         Ok(LoadedScene { scene, load_ms })
     }
 
@@ -62,5 +54,15 @@ impl SceneArgs {
             tracing::info!("{} has no camera; a view of the whole scene is taken", scene.name);
         }
         Ok(view)
+    }
+}
+
+/// Warns of what the user should know of a scene; `advice` says how it would get light.
+pub(crate) fn warn_of(scene: &Scene, advice: &str) {
+    for warning in &scene.warnings {
+        tracing::warn!("{warning}");
+    }
+    if !scene.facts().lit() {
+        tracing::warn!("{} has no light and stays black; {advice}", scene.name);
     }
 }

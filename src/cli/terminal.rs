@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 use anyhow::Context as _;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use irradia::reference;
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::fmt::format::Writer;
@@ -119,6 +120,32 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// The progress of samples of a reference, which has a bar as soon as there is something to do.
+pub(crate) struct Steps<'a> {
+    terminal: &'a Terminal,
+    about: String,
+    bar: Option<Progress>,
+}
+
+impl<'a> Steps<'a> {
+    pub(crate) fn new(terminal: &'a Terminal, about: &str) -> Steps<'a> {
+        Steps { terminal, about: about.to_owned(), bar: None }
+    }
+
+    pub(crate) fn show(&mut self, progress: reference::Progress) {
+        if progress.done == progress.total {
+            self.bar = None;
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let bar = self.terminal.progress(u64::from(progress.total));
+            bar.about(&self.about);
+            bar
+        });
+        bar.at(u64::from(progress.done));
     }
 }
 

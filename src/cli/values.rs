@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::output::ImageFormat;
+use irradia::reference::{PixelFilter, filter_name};
 use irradia::renderer::{Preset, Settings, Slot, Technique, ToneMap};
 
 /// `WxH`, both at least 1.
@@ -58,6 +59,13 @@ pub(crate) fn setting(text: &str) -> Result<Setting, String> {
     let mut settings = Settings::new(Technique::Rsm, Preset::Default);
     settings.set(key, value).map_err(|error| error.to_string())?;
     Ok(Setting { key: key.to_owned(), value: value.to_owned() })
+}
+
+/// A percentage above 0, with or without its sign, as a share of one.
+pub(crate) fn percentage(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('%').unwrap_or(text).trim_end().parse().ok();
+    let share = number.filter(|percent: &f64| percent.is_finite() && *percent > 0.0).map(|percent| 0.01 * percent);
+    share.ok_or_else(|| "a percentage is a number above 0, such as 0.5%".to_owned())
 }
 
 /// One of a list, or all of it.
@@ -115,6 +123,14 @@ pub(crate) fn slot_choice() -> impl TypedValueParser<Value = Choice<Slot>> {
     })
 }
 
+pub(crate) fn pixel_filter() -> impl TypedValueParser<Value = PixelFilter> {
+    const ALL: [PixelFilter; 2] = [PixelFilter::Center, PixelFilter::Box];
+    PossibleValuesParser::new(ALL.map(filter_name)).try_map(|name| {
+        let found = ALL.into_iter().find(|filter| filter_name(*filter) == name);
+        found.ok_or_else(|| format!("there is no filter {name:?}"))
+    })
+}
+
 const TONE_MAPS: [(&str, ToneMap); 3] =
     [("drago", ToneMap::Drago), ("aces", ToneMap::Aces), ("linear", ToneMap::Linear)];
 
@@ -150,6 +166,14 @@ mod tests {
         assert_eq!(frame_range("7..7"), Ok(FrameRange { first: 7, last: 7 }));
         for wrong in ["", "..", "3", "3..", "..3", "4..3", "1..=3", "-1..3", "a..b"] {
             assert!(frame_range(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn percentages() {
+        assert_eq!(["50%", "50", "50 %"].map(percentage), [Ok(0.5), Ok(0.5), Ok(0.5)]);
+        for wrong in ["", "%", "0", "-1%", "NaN", "inf%", "1%%"] {
+            assert!(percentage(wrong).is_err(), "{wrong}");
         }
     }
 

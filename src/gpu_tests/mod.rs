@@ -4,6 +4,7 @@
 //! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
 //! that outlives its renderer.
 
+mod bench_slots;
 mod bvh;
 mod bvh_closed;
 mod bvh_speed;
@@ -19,6 +20,7 @@ mod memory;
 mod probe;
 mod raster;
 mod rays;
+mod reference_files;
 mod repeats;
 mod robustness;
 mod scenes;

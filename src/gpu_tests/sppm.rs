@@ -141,10 +141,15 @@ fn photons_stay_on_their_side() {
     assert_eq!(means(&by_photons(&session, &scene, &outside, None, 2)), [0.0; 5]);
 }
 
-/// For the eye: what `IRRADIA_SPPM` names (`scene,camera,passes,file.exr`).
 #[test]
-#[ignore = "writes a picture"]
-fn picture() {
-    use crate::output::write_exr;
-    let _ = write_exr;
+#[ignore = "debug"]
+fn debug() {
+    let session = Session::open();
+    let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u32>().ok());
+    let scene = builtin(&std::env::var("S").unwrap());
+    let camera = scene.camera_view(std::env::var("C").ok().as_deref()).expect("its camera");
+    let (bounces, count) = (number("B"), number("N").unwrap());
+    let photons = by_photons(&session, &scene, &camera, bounces, count);
+    let paths = by_paths(&session, &scene, &camera, bounces, count);
+    println!("{bounces:?} {count}: photons {:.5?}\n paths {:.5?}", means(&photons), means(&paths));
 }

@@ -3,9 +3,13 @@
 //! Files appear whole or not at all ([`AtomicFile`]), and carry what they show as attributes, so that a picture found
 //! a year later still says which scene, settings and device made it.
 
-mod atomic_file;
+pub(crate) mod atomic_file;
 mod exr;
+mod header;
+mod layers;
 mod png;
+mod seal;
+mod supersample;
 pub mod tonemap;
 
 use std::collections::BTreeMap;
@@ -13,7 +17,9 @@ use std::path::{Path, PathBuf};
 
 pub use self::atomic_file::{AtomicFile, check_target};
 pub use self::exr::{ExrImage, read_exr, write_exr};
+pub(crate) use self::layers::{SealedError, read_attributes, read_sealed_layers, write_sealed_layers};
 pub use self::png::write_png;
+pub use self::supersample::box_reduced;
 
 /// What a picture is of, by name: scene, settings, device, version …
 pub type Attributes = BTreeMap<String, String>;

@@ -73,7 +73,7 @@ impl Sums {
 
 /// Starts the wave's paths.
 pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: &Wave) {
-    paths.clear_queues(graph, Walk::FromCamera, 0);
+    paths.clear_queues(graph, Walk::FromCamera);
     let generate = shaders::Generate {
         camera: paths.camera.clone(),
         sobol: paths.sobol.clone(),
@@ -97,7 +97,6 @@ pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: 
 /// Takes the paths to their vertex number `depth`, counted from 0, and on from there.
 pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
     paths.intersect(graph, scene, Walk::FromCamera, depth);
-    paths.clear_queues(graph, Walk::FromCamera, depth + 1);
     paths.surface(graph, scene, view, Walk::FromCamera, depth);
     if view.bounces.is_none_or(|bounces| depth <= bounces) {
         if scene.emitter_count > 0 {
@@ -105,6 +104,7 @@ pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene,
         }
         paths.scatter(graph, Walk::FromCamera, depth);
     }
+    paths.tally(graph, Walk::FromCamera, depth);
 }
 
 /// Next-event estimation.

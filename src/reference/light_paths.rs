@@ -97,7 +97,7 @@ pub(super) fn scale_of(scene: &TracedScene) -> f32 {
 
 /// Starts the swarm's paths.
 pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, swarm: &Swarm) {
-    paths.clear_queues(graph, Walk::FromLight, 0);
+    paths.clear_queues(graph, Walk::FromLight);
     let emit = shaders::Emit {
         sobol: paths.sobol.clone(),
         emitters: paths.scene.emitters.clone(),
@@ -137,7 +137,6 @@ pub(super) fn advance(
     depth: u32,
 ) {
     paths.intersect(graph, scene, Walk::FromLight, depth);
-    paths.clear_queues(graph, Walk::FromLight, depth + 1);
     paths.surface(graph, scene, view, Walk::FromLight, depth);
     if depth > 0 {
         connect_to_camera(graph, paths, splats, scene, view);
@@ -145,6 +144,7 @@ pub(super) fn advance(
     if view.bounces.is_none_or(|bounces| depth < bounces) {
         paths.scatter(graph, Walk::FromLight, depth);
     }
+    paths.tally(graph, Walk::FromLight, depth);
 }
 
 fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, scene: &TracedScene, view: &View) {

@@ -3,22 +3,50 @@
 //! A reference is made of samples of two independent halves, A and B, which differ in the scrambling of their sample sequences. The
 //! image is the mean over all samples; half the difference of the halves' means has the variance of that mean, which is the
 //! noise that reports state.
+//!
+//! ```text
+//! source ──▶ blocks ──▶ file ──▶ cache, shards
+//! (samples)  (exact      └────▶ result (images, noise)
+//!             sums)
+//! ```
 
+mod about;
+mod blocks;
+mod cache;
 mod camera_paths;
 mod emitters;
+mod error;
+mod file;
+mod key;
 mod light_paths;
+mod noise;
+mod obtain;
 mod paths;
 mod photon_map;
+mod result;
+mod shard;
 mod sobol;
 pub(crate) mod sppm;
+#[cfg(test)]
+mod tests;
 mod texels;
 mod traced_scene;
 pub(crate) mod tracer;
 
 use serde::{Deserialize, Serialize};
 
-use crate::renderer::Error;
-use crate::scene::CameraView;
+pub use self::blocks::CHUNK_SAMPLES;
+pub use self::cache::{Cache, Entry, EntryContent};
+pub use self::error::ReferenceError;
+pub use self::file::ReferenceFile;
+pub use self::key::{REFERENCE_VERSION, ReferenceKey, estimator_name, filter_name};
+pub use self::noise::Noise;
+pub use self::obtain::{Goal, Job, MAX_SPP, Progress, obtain};
+pub(crate) use self::result::sum;
+pub use self::result::{IMAGE, Reference};
+pub use self::shard::{Shard, merge};
+use crate::renderer::{Context, Error};
+use crate::scene::{CameraView, Scene};
 
 /// How light transport is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -74,4 +102,29 @@ pub trait SampleSource {
     /// # Errors
     /// Exhausted device memory, a lost device.
     fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error>;
+
+    /// Rays traced so far; 0 if they are not counted.
+    fn rays(&self) -> u64 {
+        0
+    }
+}
+
+/// Sets the seeds of references apart from those of techniques: a technique that takes some of the very samples that it is
+/// compared with would look better than it is.
+const SEEDS_OF_REFERENCES: u32 = 0x2545_F491;
+
+/// Who adds up the samples of what `request` asks of `scene`.
+///
+/// # Errors
+/// An estimator that there is not; a scene that does not fit the device.
+fn source<'a>(
+    context: &'a Context,
+    scene: &'a Scene,
+    request: &'a ReferenceRequest,
+) -> Result<Box<dyn SampleSource + 'a>, Error> {
+    let request = ReferenceRequest { seed: request.seed ^ SEEDS_OF_REFERENCES, ..request.clone() };
+    match request.estimator {
+        Estimator::Path => Ok(Box::new(tracer::PathSource::new(context, scene, &request)?)),
+        Estimator::Sppm => Ok(Box::new(sppm::SppmSource::new(context, scene, &request)?)),
+    }
 }

@@ -10,7 +10,7 @@ use super::sobol::sobol_points;
 use super::traced_scene::{TracedBindings, TracedScene};
 use super::tracer::View;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
-use crate::graph::{Dependence, Graph};
+use crate::graph::{Dependence, Graph, ReadBack};
 use crate::renderer::Slot;
 use crate::shaders::{path as shaders, types};
 
@@ -78,6 +78,7 @@ pub(super) struct Paths {
     active: [BufferRef<u32>; 2],
     pub(super) alive: BufferRef<u32>,
     pub(super) connections: BufferRef<u32>,
+    totals: BufferRef<u32>,
     pub(super) radiance: BufferRef<[f32; 4]>,
     pub(super) capacity: u32,
 }
@@ -90,6 +91,8 @@ impl Paths {
         let lobes = 1 + variants.specular as usize;
         let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
         let queue = QUEUE_HEADER + paths;
+        let totals = graph.buffer("path.totals", 4);
+        graph.fill_buffer("path/clear-totals", totals, 0);
         Paths {
             scene: scene.import(graph),
             variants,
@@ -106,6 +109,7 @@ impl Paths {
             active: [graph.buffer("path.active.0", queue), graph.buffer("path.active.1", queue)],
             alive: graph.buffer("path.alive", queue),
             connections: graph.buffer("path.connections", queue),
+            totals,
             radiance: graph.buffer("path.radiance", Slot::ALL.len() * paths),
             capacity,
         }
@@ -116,14 +120,27 @@ impl Paths {
         self.active[depth as usize % 2]
     }
 
-    /// Empties the queues that are filled on the way to vertex number `depth`.
-    pub(super) fn clear_queues(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+    /// Empties all queues, for a wave that starts.
+    pub(super) fn clear_queues(&self, graph: &mut Graph<'_>, walk: Walk) {
         let clear = shaders::Clear {
-            active_paths: self.active(depth).read_write(),
+            active_paths: self.active(0).read_write(),
+            next_paths: self.active(1).read_write(),
             alive_paths: self.alive.read_write(),
             connections: self.connections.read_write(),
         };
         graph.pass(&walk.pass("clear"), clear).groups([1, 1, 1]);
+    }
+
+    /// Counts the rays of the step to vertex number `depth` and empties its queues.
+    pub(super) fn tally(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+        let tally = shaders::Tally {
+            active_paths: self.active(depth).read_write(),
+            alive_paths: self.alive.read_write(),
+            connections: self.connections.read_write(),
+            next_paths: self.active(depth + 1).texels(WORD),
+            totals: self.totals.read_write(),
+        };
+        graph.pass(&walk.pass("tally"), tally).groups([1, 1, 1]);
     }
 
     /// What the paths of vertex number `depth` meet.
@@ -214,18 +231,19 @@ impl Paths {
             light_paths: variants.light_paths,
             push: shaders::ScatterPush { depth, reserved: 0 },
         };
-        graph.pass(&walk.pass("scatter"), scatter).count("paths on", next, 3).threads_indirect(self.alive, 0);
+        graph.pass(&walk.pass("scatter"), scatter).threads_indirect(self.alive, 0);
     }
 
-    /// Asks for all that the next submission goes on from.
-    pub(super) fn want(&self, graph: &mut Graph<'_>) {
+    /// Asks for all that the next submission goes on from, and for the totals of this one: rays, and paths that go on.
+    pub(super) fn want(&self, graph: &mut Graph<'_>) -> ReadBack {
         graph.want_buffer(self.rays);
         graph.want_buffer(self.states);
         graph.want_buffer(self.flags);
         graph.want_buffer(self.seeds);
-        for active in self.active {
-            graph.want_buffer(active);
+        for queue in self.active.into_iter().chain([self.alive, self.connections]) {
+            graph.want_buffer(queue);
         }
+        graph.read_back_buffer(self.totals)
     }
 }
 

@@ -5,8 +5,8 @@
 
 use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS};
 use super::tracer::View;
-use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
+use crate::graph::{Graph, ReadBack};
 use crate::shaders::sppm as shaders;
 
 /// Texels of a photon and of a measurement point (glsl/sppm/photon.glsl).
@@ -110,7 +110,7 @@ impl PhotonMap {
             transmissive: paths.variants.transmissive,
             push: shaders::StorePush { depth, bits: self.bits, inverse_cell: disc.inverse_cell(), reserved: 0 },
         };
-        graph.pass("sppm/store", store).count("photons", self.photon_queue, 3).threads_indirect(paths.alive, 0);
+        graph.pass("sppm/store", store).threads_indirect(paths.alive, 0);
     }
 
     /// Adds the photons to what the measurement points' paths found, and takes them away.
@@ -155,12 +155,12 @@ impl PhotonMap {
         graph.want_buffer(paths.radiance);
     }
 
-    /// Asks for all that the next submission goes on from.
-    pub(super) fn want(&self, graph: &mut Graph<'_>) {
+    /// Asks for all that the next submission goes on from, and for the queue of photons, whose last word is their number.
+    pub(super) fn want(&self, graph: &mut Graph<'_>) -> ReadBack {
         graph.want_buffer(self.points);
         graph.want_buffer(self.point_queue);
         graph.want_buffer(self.photons);
-        graph.want_buffer(self.photon_queue);
         graph.want_buffer(self.bucket_counts);
+        graph.read_back_buffer(self.photon_queue)
     }
 }

@@ -27,7 +27,7 @@ use super::photon_map::{Disc, PhotonMap};
 use super::traced_scene::TracedScene;
 use super::tracer::{View, scatter_sums, seed_of_half, seed_of_sample};
 use super::{ReferenceRequest, SampleSource, SlotSums};
-use crate::graph::{Executed, Graph, Store};
+use crate::graph::{Executed, Graph, ReadBack, Store};
 use crate::renderer::{Context, Error, Slot, Timing};
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
@@ -35,7 +35,7 @@ use crate::vulkan::VulkanError;
 /// The share of the photons that a pass keeps.
 const ALPHA: f64 = 2.0 / 3.0;
 /// The first radius: a disc that gets so many photons where every light path leaves one, spread over all surfaces.
-const FIRST_PHOTONS: f64 = 3.0;
+const FIRST_PHOTONS: f64 = 1.0;
 /// Camera paths at a time, at most; each run of these traces the pass's photons again.
 const RUN_PATHS: u32 = 1 << 20;
 /// Light paths at a time, at most.
@@ -54,6 +54,7 @@ pub(crate) struct SppmSource {
     view: View,
     run_blocks: u32,
     swarm_paths: u32,
+    rays: u64,
 }
 
 /// Some pixels of one pass.
@@ -79,7 +80,7 @@ impl SppmSource {
         let runs = blocks.div_ceil(paths / 64).max(1);
         let run_blocks = blocks.div_ceil(runs);
         let swarm_paths = SWARM_PATHS.min(64 * run_blocks);
-        Ok(SppmSource { store: Store::new(device)?, scene, view, run_blocks, swarm_paths })
+        Ok(SppmSource { store: Store::new(device)?, scene, view, run_blocks, swarm_paths, rays: 0 })
     }
 
     fn sums_of_passes(&mut self, half: u32, [first, count]: [u32; 2]) -> Result<SlotSums, VulkanError> {
@@ -141,11 +142,12 @@ impl SppmSource {
                 advance_from_camera(&mut graph, &paths, &map, scene, view, depth);
             }
             depth = until;
-            paths.want(&mut graph);
             map.want(&mut graph);
             graph.want_buffer(paths.radiance);
-            let executed = graph.run(Timing::Frame)?;
-            if depth == all || last_count(&executed, "paths on") == 0 {
+            let totals = paths.want(&mut graph);
+            let [rays, active, ..] = words(&mut graph.run(Timing::Frame)?, totals);
+            self.rays += u64::from(rays);
+            if active == 0 {
                 return Ok(());
             }
         }
@@ -178,11 +180,13 @@ impl SppmSource {
                     advance_from_light(&mut graph, &paths, &map, scene, view, pass.disc, depth);
                 }
                 depth = until;
-                paths.want(&mut graph);
-                map.want(&mut graph);
-                let executed = graph.run(Timing::Frame)?;
-                active = last_count(&executed, "paths on");
-                photons = last_count(&executed, "photons").max(photons);
+                let stored = map.want(&mut graph);
+                let totals = paths.want(&mut graph);
+                let mut executed = graph.run(Timing::Frame)?;
+                let rays;
+                [rays, active, ..] = words(&mut executed, totals);
+                [.., photons] = words(&mut executed, stored);
+                self.rays += u64::from(rays);
             }
         }
         if photons > 0 { self.gather(pass) } else { Ok(()) }
@@ -210,6 +214,10 @@ impl SampleSource for SppmSource {
     fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error> {
         Ok(self.sums_of_passes(half, [first, count])?)
     }
+
+    fn rays(&self) -> u64 {
+        self.rays
+    }
 }
 
 /// Takes the paths to their vertex number `depth`, counted from 0, and on from there.
@@ -222,7 +230,6 @@ fn advance_from_camera(
     depth: u32,
 ) {
     paths.intersect(graph, scene, Walk::FromCamera, depth);
-    paths.clear_queues(graph, Walk::FromCamera, depth + 1);
     paths.surface(graph, scene, view, Walk::FromCamera, depth);
     if view.bounces.is_none_or(|bounces| depth <= bounces) {
         if scene.emitter_count > 0 {
@@ -234,6 +241,7 @@ fn advance_from_camera(
         }
         paths.scatter(graph, Walk::FromCamera, depth);
     }
+    paths.tally(graph, Walk::FromCamera, depth);
 }
 
 /// As [`advance_from_camera`].
@@ -247,7 +255,6 @@ fn advance_from_light(
     depth: u32,
 ) {
     paths.intersect(graph, scene, Walk::FromLight, depth);
-    paths.clear_queues(graph, Walk::FromLight, depth + 1);
     paths.surface(graph, scene, view, Walk::FromLight, depth);
     if depth > 0 {
         map.store(graph, paths, disc, depth);
@@ -255,12 +262,13 @@ fn advance_from_light(
     if view.bounces.is_none_or(|bounces| depth < bounces) {
         paths.scatter(graph, Walk::FromLight, depth);
     }
+    paths.tally(graph, Walk::FromLight, depth);
 }
 
-/// What the last pass that counts `name` counted.
-fn last_count(executed: &Executed, name: &str) -> u32 {
-    let count = executed.passes.iter().rev().find_map(|pass| pass.work.get(name).copied()).unwrap_or(0);
-    u32::try_from(count).unwrap_or(u32::MAX)
+/// Four words that were read back.
+fn words(executed: &mut Executed, read_back: ReadBack) -> [u32; 4] {
+    let words: Vec<u32> = bytemuck::pod_collect_to_vec(&executed.take(read_back));
+    [words[0], words[1], words[2], words[3]]
 }
 
 /// r_1, metres. Bounded by the scene's extent, where its surfaces are small and far from each other.

@@ -15,7 +15,7 @@ use super::traced_scene::TracedScene;
 pub(crate) use super::traced_scene::traced_key;
 use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::frame::camera::camera;
-use crate::graph::{Executed, Graph, Store};
+use crate::graph::{Executed, Graph, ReadBack, Store};
 use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
@@ -180,9 +180,9 @@ impl PathTracer {
                     camera_paths::advance(&mut graph, &paths, scene, view, depth);
                 }
                 depth = until;
-                paths.want(&mut graph);
                 graph.want_buffer(paths.radiance);
-                if self.cost.add(graph.run(self.timing)?) == 0 {
+                let totals = paths.want(&mut graph);
+                if self.cost.add_step(graph.run(self.timing)?, totals) == 0 {
                     break;
                 }
             }
@@ -237,9 +237,9 @@ impl PathTracer {
                         light_paths::advance(&mut graph, &paths, &splats, scene, view, depth);
                     }
                     depth = until;
-                    paths.want(&mut graph);
                     splats.want(&mut graph);
-                    if self.cost.add(graph.run(self.timing)?) == 0 {
+                    let totals = paths.want(&mut graph);
+                    if self.cost.add_step(graph.run(self.timing)?, totals) == 0 {
                         break;
                     }
                 }
@@ -283,12 +283,18 @@ pub(super) fn seed_of_sample(seed: u32, sample: u32) -> u32 {
 }
 
 impl TraceCost {
-    /// Adds a submission. Returns how many paths go on from it.
-    fn add(&mut self, executed: Executed) -> u64 {
+    /// Adds a submission that advanced a wave. Returns how many of its paths go on.
+    fn add_step(&mut self, mut executed: Executed, totals: ReadBack) -> u32 {
+        let totals: Vec<u32> = bytemuck::pod_collect_to_vec(&executed.take(totals));
+        self.rays += u64::from(totals[0]);
+        self.add(executed);
+        totals[1]
+    }
+
+    fn add(&mut self, executed: Executed) {
         self.gpu_ms += executed.gpu_ms;
         self.pipeline_ms += executed.pipeline_ms;
         for pass in &executed.passes {
-            self.rays += pass.work.get("rays").copied().unwrap_or(0);
             let same = |known: &&mut PassTiming| known.piece == pass.piece && known.pass == pass.pass;
             match self.passes.iter_mut().find(same) {
                 Some(known) => {
@@ -306,7 +312,6 @@ impl TraceCost {
                 None => self.passes.push(pass.clone()),
             }
         }
-        executed.passes.iter().rev().find_map(|pass| pass.work.get("paths on").copied()).unwrap_or(0)
     }
 }
 
@@ -350,5 +355,9 @@ impl PathSource {
 impl SampleSource for PathSource {
     fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error> {
         Ok(self.tracer.sums(&self.view, half, first, count)?)
+    }
+
+    fn rays(&self) -> u64 {
+        self.tracer.cost.rays
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::slots::Slot;
+use crate::reference::Noise;
 use crate::scene::CameraView;
 
 /// How the frame is timed.
@@ -120,6 +121,22 @@ pub struct Frame {
     pub slots: BTreeMap<Slot, ColorImage>,
     /// sRGB-encoded display values, 8 bits, if a tone map was asked for: `size[0] * size[1]` pixels.
     pub display: Option<Vec<[u8; 3]>>,
+    /// How sure the frame is, if it was estimated by random samples.
+    pub estimate: Option<Estimate>,
     /// What the frame cost.
     pub timings: FrameTimings,
+}
+
+/// How a frame was sampled and how noisy that left it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Samples of every pixel.
+    pub spp: u32,
+    /// Rays cast.
+    pub rays: u64,
+    /// Time that the samples took, seconds on the device.
+    pub seconds: f64,
+    /// The noise of each traced slot by its name, and of their sum as `image`, by the two halves of the samples; empty for a single
+    /// sample.
+    pub noise: BTreeMap<String, Noise>,
 }

@@ -29,7 +29,7 @@ mod slots;
 
 pub use context::Context;
 pub use error::Error;
-pub use frame::{ColorImage, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
+pub use frame::{ColorImage, Estimate, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
 pub use render::Renderer;
 pub use settings::{
     CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, PathSettings, Preset, RsmSettings, Settings,

@@ -5,20 +5,27 @@ use std::time::Instant;
 
 use super::render::black;
 use super::{
-    CausticsMethod, ColorImage, DiffuseMethod, DirectMethod, Error, Frame, FrameRequest, FrameTimings, Methods,
-    Renderer, Settings, Slot, SpecularMethod,
+    CausticsMethod, ColorImage, DiffuseMethod, DirectMethod, Error, Estimate, Frame, FrameRequest, FrameTimings,
+    Methods, Renderer, Settings, Slot, SpecularMethod,
 };
 use crate::graph::hash_of;
 use crate::output::tonemap::tone_map;
 use crate::reference::tracer::{PathTracer, TraceCost, traced_key};
-use crate::reference::{Estimator, ReferenceRequest};
+use crate::reference::{Estimator, IMAGE, Noise, ReferenceRequest, SlotSums};
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
 
 /// The tracer of a renderer, and its last result.
 pub(crate) struct TracedPaths {
     tracer: PathTracer,
-    held: Option<(u64, BTreeMap<Slot, ColorImage>)>,
+    held: Option<(u64, Traced)>,
+}
+
+/// What the samples of a frame come to.
+#[derive(Clone)]
+struct Traced {
+    slots: BTreeMap<Slot, ColorImage>,
+    estimate: Estimate,
 }
 
 impl TracedPaths {
@@ -58,7 +65,7 @@ impl Renderer {
         let methods = self.settings.methods;
         let traced = methods.traced_slots();
         let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
-        let mut slots = self.trace(scene, request, &mut timings)?;
+        let Traced { mut slots, estimate } = self.trace(scene, request, &traced, &mut timings)?;
         let others: Vec<Slot> = Slot::ALL.into_iter().filter(|slot| !traced.contains(slot)).collect();
         slots.retain(|slot, _| traced.contains(slot));
         if !others.is_empty() {
@@ -72,7 +79,8 @@ impl Renderer {
             slots.extend(drawn.slots);
             timings.add(drawn.timings);
         }
-        let mut frame = Frame { size: request.size, image: None, slots: BTreeMap::new(), display: None, timings };
+        let (size, estimate) = (request.size, Some(estimate));
+        let mut frame = Frame { size, image: None, slots: BTreeMap::new(), display: None, estimate, timings };
         if request.read_back || request.tonemap.is_some() {
             let image = sum_of(slots.values(), request.size);
             frame.display = request.tonemap.map(|map| tone_map(&image, map));
@@ -90,8 +98,9 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         request: &FrameRequest,
+        traced: &[Slot],
         timings: &mut FrameTimings,
-    ) -> Result<BTreeMap<Slot, ColorImage>, Error> {
+    ) -> Result<Traced, Error> {
         let start = Instant::now();
         let device = self.device().clone();
         let paths = match &mut self.paths {
@@ -110,23 +119,24 @@ impl Renderer {
             seed: settings.seed,
         };
         let view = format!("{:?}", (&asked, settings.spp));
-        let key = hash_of(&(traced_key(scene), scene.sky().map(f32::to_bits), view));
-        let slots = match &paths.held {
-            Some((held, slots)) if *held == key => {
+        let key = hash_of(&(traced_key(scene), scene.sky().map(f32::to_bits), view, traced));
+        let made = match &paths.held {
+            Some((held, made)) if *held == key => {
                 timings.passes = paths.tracer.unchanged_passes();
-                slots.clone()
+                made.clone()
             }
             _ => {
                 paths.tracer.set_timing(request.timing);
-                let slots = mean_of_samples(&mut paths.tracer, &asked, settings.spp)?;
-                paths.held = Some((key, slots.clone()));
-                let TraceCost { gpu_ms, pipeline_ms, passes, .. } = paths.tracer.take_cost();
+                let mut made = mean_of_samples(&mut paths.tracer, &asked, settings.spp, traced)?;
+                let TraceCost { gpu_ms, pipeline_ms, passes, rays } = paths.tracer.take_cost();
                 (timings.gpu_ms, timings.pipeline_ms, timings.passes) = (gpu_ms, pipeline_ms, passes);
-                slots
+                (made.estimate.rays, made.estimate.seconds) = (rays, 1e-3 * gpu_ms);
+                paths.held = Some((key, made.clone()));
+                made
             }
         };
         timings.memory_bytes = paths.tracer.memory_bytes();
-        Ok(slots)
+        Ok(made)
     }
 }
 
@@ -143,28 +153,46 @@ impl FrameTimings {
     }
 }
 
-/// Half of the samples from each of the reference's two halves.
+/// Half of the samples from each of the reference's two halves, A and B, with a and b samples. As the halves are independent, the
+/// difference of their means times √(ab)/(a + b) has the variance of the mean of all samples.
 fn mean_of_samples(
     tracer: &mut PathTracer,
     request: &ReferenceRequest,
     spp: u32,
-) -> Result<BTreeMap<Slot, ColorImage>, VulkanError> {
+    traced: &[Slot],
+) -> Result<Traced, VulkanError> {
     let view = tracer.view(request);
-    let mut sums = tracer.sums(&view, 0, 0, spp.div_ceil(2))?;
-    if spp > 1 {
-        let other = tracer.sums(&view, 1, 0, spp / 2)?;
-        for (pixels, others) in sums.slots.iter_mut().zip(other.slots) {
-            for (pixel, other) in pixels.iter_mut().zip(others) {
-                *pixel = [0, 1, 2].map(|channel| pixel[channel] + other[channel]);
-            }
+    let (a, b) = (spp.div_ceil(2), spp / 2);
+    let first = tracer.sums(&view, 0, 0, a)?;
+    let mut estimate = Estimate { spp, ..Estimate::default() };
+    let halves: Vec<SlotSums> = if b > 0 { vec![first, tracer.sums(&view, 1, 0, b)?] } else { vec![first] };
+    let mut slots = BTreeMap::new();
+    let mut differences = Vec::new();
+    for (index, slot) in Slot::ALL.into_iter().enumerate().filter(|(_, slot)| traced.contains(slot)) {
+        let sum =
+            |pixel: usize, channel: usize| halves.iter().map(|half| half.slots[index][pixel][channel]).sum::<f32>();
+        let count = halves[0].slots[index].len();
+        let pixels = (0..count).map(|pixel| [0, 1, 2].map(|channel| sum(pixel, channel) / spp as f32)).collect();
+        slots.insert(slot, ColorImage { size: request.size, pixels });
+        if let [first, second] = &halves[..] {
+            let scale = (a as f32 * b as f32).sqrt() / spp as f32;
+            let difference: Vec<[f32; 3]> = first.slots[index]
+                .iter()
+                .zip(&second.slots[index])
+                .map(|(x, y)| [0, 1, 2].map(|channel| (x[channel] / a as f32 - y[channel] / b as f32) * scale))
+                .collect();
+            differences.push((slot, difference));
         }
     }
-    let scale = 1.0 / spp as f32;
-    let image = |mut pixels: Vec<[f32; 3]>| {
-        pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|channel| channel * scale));
-        ColorImage { size: request.size, pixels }
-    };
-    Ok(Slot::ALL.into_iter().zip(sums.slots).map(|(slot, pixels)| (slot, image(pixels))).collect())
+    for (slot, difference) in &differences {
+        estimate.noise.insert(slot.name().to_owned(), Noise::of_sum(&[&slots[slot].pixels], &[difference]));
+    }
+    if !differences.is_empty() {
+        let images: Vec<&[[f32; 3]]> = slots.values().map(|image| &image.pixels[..]).collect();
+        let halves: Vec<&[[f32; 3]]> = differences.iter().map(|(_, difference)| &difference[..]).collect();
+        estimate.noise.insert(IMAGE.to_owned(), Noise::of_sum(&images, &halves));
+    }
+    Ok(Traced { slots, estimate })
 }
 
 fn sum_of<'a>(slots: impl Iterator<Item = &'a ColorImage>, size: [u32; 2]) -> ColorImage {

@@ -95,8 +95,14 @@ impl Renderer {
 
         let mut executed = graph.run(request.timing)?;
         let size = request.size;
-        let mut frame =
-            Frame { size, image: None, slots: BTreeMap::new(), display: None, timings: FrameTimings::default() };
+        let mut frame = Frame {
+            size,
+            image: None,
+            slots: BTreeMap::new(),
+            display: None,
+            estimate: None,
+            timings: FrameTimings::default(),
+        };
         frame.image = image.map(|read_back| color_image(size, &executed.take(read_back)));
         if request.read_back {
             for (slot, read_back) in slots {

@@ -226,6 +226,11 @@ impl Methods {
         }
     }
 
+    /// Whether something fills `slot`: a method, or for emission the surfaces themselves.
+    pub fn fills(&self, slot: Slot) -> bool {
+        self.name_of(slot) != "none"
+    }
+
     /// Whether paths are traced for some slot besides `direct`.
     pub fn traces_paths(&self) -> bool {
         self.diffuse == DiffuseMethod::Path
@@ -365,6 +370,31 @@ impl Settings {
         }
     }
 
+    /// Scatterings between the light and the first visible surface that the methods account for, at most; `None`: no limit. What
+    /// a reference of equal light paths is limited to.
+    pub fn bounces(&self) -> Option<u32> {
+        let Methods { direct: _, diffuse, caustics, specular } = self.methods;
+        let diffuse = match diffuse {
+            DiffuseMethod::None => Some(0),
+            DiffuseMethod::Rsm => Some(1),
+            DiffuseMethod::Path => self.path.bounces,
+        };
+        let caustics = match caustics {
+            CausticsMethod::None => Some(0),
+            CausticsMethod::Path => self.path.bounces,
+        };
+        let specular = match specular {
+            SpecularMethod::None => Some(0),
+            SpecularMethod::Path => self.path.bounces,
+        };
+        [diffuse, caustics, specular].into_iter().try_fold(0, |most, bounces| Some(bounces?.max(most)))
+    }
+
+    /// Where in a pixel the methods sample light: at its centre, unless paths are traced otherwise.
+    pub fn filter(&self) -> PixelFilter {
+        if self.methods.traces_paths() { self.path.filter } else { PixelFilter::Center }
+    }
+
     /// All settings that `set` takes, as `piece.key`.
     pub fn keys(&self) -> Vec<String> {
         let mut keys = Vec::new();
@@ -442,6 +472,23 @@ mod tests {
             settings.set(&key, &value).expect("its own value is within its range");
         }
         assert_eq!(settings, before);
+    }
+
+    #[test]
+    fn methods_say_what_they_account_for() {
+        let of = |technique| Settings::new(technique, Preset::Default);
+        assert_eq!((of(Technique::Direct).bounces(), of(Technique::Rsm).bounces()), (Some(0), Some(1)));
+        let mut path = of(Technique::Path);
+        assert_eq!(path.bounces(), None);
+        path.path.bounces = Some(3);
+        assert_eq!((path.bounces(), path.filter()), (Some(3), PixelFilter::Center));
+        path.path.filter = PixelFilter::Box;
+        assert_eq!(path.filter(), PixelFilter::Box);
+        let rsm = Settings { path: path.path, ..of(Technique::Rsm) };
+        assert_eq!((rsm.bounces(), rsm.filter()), (Some(1), PixelFilter::Center));
+        let filled = |technique| Slot::ALL.into_iter().filter(move |slot| of(technique).methods.fills(*slot));
+        assert!(filled(Technique::Direct).eq([Slot::Emission, Slot::Direct]));
+        assert!(filled(Technique::Rsm).eq([Slot::Emission, Slot::Direct, Slot::Diffuse]));
     }
 
     #[test]

@@ -24,6 +24,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::splits::split_aabbs_preset;
 use obvhs::triangle::Triangle;
 
+#[cfg(test)]
 use super::Scene;
 
 /// Levels of the deepest tree that the shader's stack holds: its `BVH_STACK_SIZE`.
@@ -90,6 +91,7 @@ impl Bvh {
     /// All triangles of a scene, in the order of its instances and their indices, around `origin`, in metres.
     ///
     /// Corners keep the order of the indices, also where an instance mirrors its mesh. `flags` gives those of an instance.
+    #[cfg(test)]
     pub(crate) fn triangles_of(
         scene: &Scene,
         origin: DVec3,

@@ -10,6 +10,7 @@
 //! | `editing` | adding things to it and changing them |
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `facts` | what it contains, which decides what need not run |
+//! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
 //! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
 //! | `bvh` | the hierarchy that shaders trace rays through |
@@ -24,6 +25,8 @@ mod auto_view;
 mod builtin;
 pub(crate) mod bvh;
 mod camera;
+mod content_hash;
+mod digest;
 mod editing;
 mod emitters;
 mod error;
@@ -47,6 +50,8 @@ pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub use world::{Node, Revisions, Scene};
+
+pub(crate) use digest::Digest;
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $id:ident,)*) => {$(

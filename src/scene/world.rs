@@ -91,6 +91,16 @@ pub struct Scene {
     bounds: OnceLock<Option<Bounds>>,
 }
 
+/// What decides how a scene looks, see [`Scene::content`].
+pub(super) struct Content<'a> {
+    pub(super) meshes: &'a [Mesh],
+    pub(super) materials: &'a [Material],
+    pub(super) textures: &'a [Texture],
+    pub(super) instances: &'a [Instance],
+    pub(super) lights: Vec<PlacedLight>,
+    pub(super) sky: [f32; 3],
+}
+
 /// What a node's place in the world comes to.
 #[derive(Clone, Debug)]
 struct Placement {
@@ -183,6 +193,30 @@ impl Scene {
                 })
             })
             .collect()
+    }
+
+    /// What decides how the scene looks. The rest is names, bookkeeping, and what instances and placed lights follow from.
+    pub(super) fn content(&self) -> Content<'_> {
+        let Scene {
+            name: _,
+            description: _,
+            warnings: _,
+            meshes,
+            materials,
+            textures,
+            nodes: _,
+            placements: _,
+            instances,
+            lights: _,
+            cameras: _,
+            animations: _,
+            rest_poses: _,
+            sky,
+            revisions: _,
+            identity: _,
+            bounds: _,
+        } = self;
+        Content { meshes, materials, textures, instances, lights: self.placed_lights(), sky: *sky }
     }
 
     /// The tight box around all triangles in world space; `None` if there are none. Cached until the geometry changes.

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{SUMMARY_HEADER, by_scene, summary_cells};
+use super::{by_scene, summary_cells, summary_header};
+use crate::bench::error_rows::{ERROR_HEADER, ERROR_NOTE, error_rows};
 use crate::bench::report::Report;
 use crate::bench::rows::{self, HEADER};
 
@@ -11,7 +12,8 @@ pub fn markdown(report: &Report) -> String {
     let mut out = String::new();
     line(&mut out, &report.heading());
     line(&mut out, "");
-    table(&mut out, &SUMMARY_HEADER, 2..7, report.runs.iter().map(|run| summary_cells(run).to_vec()));
+    let header = summary_header(&report.runs);
+    table(&mut out, &header, 2..header.len(), summary_cells(&report.runs));
     for runs in by_scene(&report.runs) {
         for (index, run) in runs.iter().enumerate() {
             if index == 0 {
@@ -21,6 +23,12 @@ pub fn markdown(report: &Report) -> String {
             let cells =
                 rows::rows(run).into_iter().map(|row| [row.name.clone()].into_iter().chain(row.cells()).collect());
             table(&mut out, &HEADER, 1..5, cells);
+            let errors = error_rows(run);
+            if !errors.is_empty() {
+                line(&mut out, "");
+                table(&mut out, &ERROR_HEADER, 1..9, errors.iter().map(|row| row.cells().to_vec()));
+                line(&mut out, &format!("\n{ERROR_NOTE}"));
+            }
         }
     }
     if !report.failures.is_empty() {
@@ -52,6 +60,7 @@ fn line(out: &mut String, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::error_rows::tests::compared_run;
     use crate::bench::report::{Failure, Run};
     use crate::bench::samples::tests::example_run;
     use crate::renderer::DeviceReport;
@@ -59,7 +68,7 @@ mod tests {
     #[test]
     fn every_table_is_sound() {
         let mut report = Report::new(&DeviceReport::default());
-        report.runs = vec![example_run(), Run { scene: "a|b".to_owned(), ..example_run() }];
+        report.runs = vec![example_run(), compared_run(), Run { scene: "a|b".to_owned(), ..example_run() }];
         report.failures.push(Failure {
             scene: "ring".to_owned(),
             error: "no such file".to_owned(),
@@ -77,6 +86,7 @@ mod tests {
         for words in ["| sponza | rsm (default) | 18.50 |", "## a|b", "### rsm (default)", "- ring: no such file"] {
             assert!(text.contains(words), "{words} is not in\n{text}");
         }
+        assert!(text.contains("| diffuse | 12.5 % | 50.0 % |"), "{text}");
         assert!(text.contains("| caustics/splat | skipped |  |  |  | no specular surface |"), "{text}");
     }
 }

@@ -3,31 +3,46 @@
 mod comparison;
 mod csv;
 mod markdown;
+mod reference;
 mod text;
 
 pub use comparison::comparison_text;
 pub use csv::csv;
+pub(crate) use csv::line as csv_line;
 pub use markdown::markdown;
+pub use reference::{cache_text, reference_text};
+pub(crate) use text::table;
 pub use text::{TEXT_WIDTH, scene_text, summary_text};
 
 use super::report::Run;
-use super::{rows, units};
+use super::{error_rows, rows, units};
 
 /// The header of [`summary_cells`].
-const SUMMARY_HEADER: [&str; 7] =
-    ["scene", "technique", "frame ms", "serialised ms", "unchanged ms", "memory", "compile ms"];
+fn summary_header(runs: &[Run]) -> Vec<&'static str> {
+    let times = ["scene", "technique", "frame ms", "serialised ms", "unchanged ms", "memory", "compile ms"];
+    let errors = ["error covered", "full image"];
+    times.into_iter().chain(errors.into_iter().filter(|_| any_errors(runs))).collect()
+}
 
-/// One row of the table over all scenes and techniques.
-fn summary_cells(run: &Run) -> [String; 7] {
-    [
-        run.scene.clone(),
-        rows::contender(run),
-        units::milliseconds(run.frame_ms.median),
-        units::milliseconds(run.serialised_ms.median),
-        units::milliseconds(run.unchanged_ms.median),
-        units::bytes(run.memory_bytes),
-        units::milliseconds(run.compile_ms),
-    ]
+/// A row for every run of the table over all scenes and techniques; with errors if any run has them.
+fn summary_cells(runs: &[Run]) -> impl Iterator<Item = Vec<String>> {
+    let with_errors = any_errors(runs);
+    runs.iter().map(move |run| {
+        let times = [
+            run.scene.clone(),
+            rows::contender(run),
+            units::milliseconds(run.frame_ms.median),
+            units::milliseconds(run.serialised_ms.median),
+            units::milliseconds(run.unchanged_ms.median),
+            units::bytes(run.memory_bytes),
+            units::milliseconds(run.compile_ms),
+        ];
+        times.into_iter().chain(error_rows::summary(run).into_iter().filter(|_| with_errors)).collect()
+    })
+}
+
+fn any_errors(runs: &[Run]) -> bool {
+    runs.iter().any(|run| run.error.is_some() || run.error_full.is_some())
 }
 
 /// The runs of every scene together, in the order of their first run.

@@ -2,14 +2,15 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
-use super::{SUMMARY_HEADER, summary_cells};
+use super::{summary_cells, summary_header};
+use crate::bench::error_rows::{ERROR_HEADER, ERROR_NOTE, error_rows};
 use crate::bench::report::Run;
 use crate::bench::rows::{self, HEADER, Row};
 
 /// The most columns that a table takes.
 pub const TEXT_WIDTH: u16 = 110;
 
-/// All techniques on one scene, pass by pass; empty if there are none.
+/// All techniques on one scene, pass by pass, then their errors if they have any; empty if there are none.
 pub fn scene_text(runs: &[&Run]) -> String {
     let Some(first) = runs.first() else { return String::new() };
     let mut table = table(&HEADER, &[1, 2, 3, 4]);
@@ -22,13 +23,33 @@ pub fn scene_text(runs: &[&Run]) -> String {
             table.add_row(text_cells(&row));
         }
     }
-    format!("{}: {}\n{}\n", first.scene, rows::caption(first), table.trim_fmt())
+    format!("{}: {}\n{}\n{}", first.scene, rows::caption(first), table.trim_fmt(), errors_text(runs))
+}
+
+/// The errors of all techniques on one scene; empty if there are none.
+fn errors_text(runs: &[&Run]) -> String {
+    let mut table = table(&ERROR_HEADER, &[1, 2, 3, 4, 5, 6, 7, 8]);
+    let mut empty = true;
+    for run in runs {
+        let rows = error_rows(run);
+        if rows.is_empty() {
+            continue;
+        }
+        if !empty {
+            table.add_row([""]);
+        }
+        table.add_row([rows::contender(run).to_uppercase()]);
+        table.add_rows(rows.iter().map(|row| row.cells()));
+        empty = false;
+    }
+    if empty { String::new() } else { format!("{}\n{ERROR_NOTE}\n", table.trim_fmt()) }
 }
 
 /// All scenes and techniques, a row each.
 pub fn summary_text(runs: &[Run]) -> String {
-    let mut table = table(&SUMMARY_HEADER, &[2, 3, 4, 5, 6]);
-    table.add_rows(runs.iter().map(summary_cells));
+    let header = summary_header(runs);
+    let mut table = table(&header, &(2..header.len()).collect::<Vec<_>>());
+    table.add_rows(summary_cells(runs));
     format!("{}\n", table.trim_fmt())
 }
 
@@ -37,7 +58,7 @@ fn text_cells(row: &Row) -> Vec<Cell> {
 }
 
 /// A table without vertical rules, the columns of `numbers` aligned to the right.
-pub(super) fn table(header: &[&str], numbers: &[usize]) -> Table {
+pub(crate) fn table(header: &[&str], numbers: &[usize]) -> Table {
     let rule = LineStyle::none().fill('─').junction('─');
     let mut table = Table::new();
     table.load_style(TableStyle::new().top_border(rule).header_separator(rule).bottom_border(rule));
@@ -54,6 +75,7 @@ pub(super) fn table(header: &[&str], numbers: &[usize]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::error_rows::tests::compared_run;
     use crate::bench::samples::tests::example_run;
 
     fn wide_run() -> Run {
@@ -76,6 +98,18 @@ mod tests {
             assert!(text.contains(words), "{words} is not in\n{text}");
         }
         assert_eq!(scene_text(&[]), "");
+    }
+
+    #[test]
+    fn errors_stand_below_the_times() {
+        let (compared, timed) = (compared_run(), example_run());
+        let text = scene_text(&[&compared, &timed]);
+        assert!(text.lines().all(|line| line.chars().count() <= usize::from(TEXT_WIDTH)), "{text}");
+        assert!(text.contains("12.5 %") && text.contains("< 0.800 %") && text.contains("reference's noise"), "{text}");
+        assert!(!scene_text(&[&timed]).contains("noise"));
+        let summary = summary_text(&[compared, timed]);
+        assert!(summary.contains("40.0 %") && summary.contains("full image"), "{summary}");
+        assert!(!summary_text(&[example_run()]).contains("full image"));
     }
 
     #[test]

@@ -1,0 +1,259 @@
+//! The grid of a sweep: which series of settings are measured on which scenes, and what their error is.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::grid_file;
+use crate::bench::report::{ImageErrors, Run};
+use crate::renderer::{Preset, Slot, Technique};
+use crate::scene::{LightSpec, Scene, SceneError, builtin_names};
+
+/// A grid: every series on every scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Grid {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Samples per pixel of the references; `None`: times alone.
+    pub reference: Option<u32>,
+    /// Rounds of every point.
+    pub frames: u32,
+    /// Frames before them, after the first one.
+    pub warmup: u32,
+    /// A point begins no round after this many seconds; its first round it always has.
+    pub max_seconds: Option<f64>,
+    /// Which points render in turn.
+    pub interleave: Interleave,
+    /// What the error is counted against.
+    pub compare: Compare,
+    /// What the error is of: `image`, `covered` or a slot.
+    pub entry: String,
+    /// How the error is counted.
+    pub metric: Metric,
+    /// The scenes, at least one.
+    pub scenes: Vec<GridScene>,
+    /// The series, at least one.
+    pub series: Vec<Series>,
+}
+
+/// A scene of a grid, and what is added to it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GridScene {
+    /// What tables and plots call it; no two scenes of a grid have the same.
+    pub name: String,
+    /// A built-in scene, or a .gltf or .glb file seen from the grid's folder.
+    pub path: String,
+    /// The camera, by name or index; `None`: the scene's first.
+    pub camera: Option<String>,
+    /// Lights to add, written as on the command line.
+    pub light: Vec<String>,
+    /// Radiance of the sky, W/(m² sr); `None`: the scene's own.
+    pub sky: Option<[f32; 3]>,
+}
+
+/// One technique with settings that vary; a line of a plot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// What tables and plots call it; no two series of a grid have the same.
+    pub name: String,
+    /// The technique.
+    pub technique: Technique,
+    /// The presets, each a point of its own.
+    pub preset: Vec<Preset>,
+    /// Settings changed after the preset, the same for all points.
+    pub set: BTreeMap<String, Value>,
+    /// The values of each setting that varies; the points are all combinations.
+    pub vary: BTreeMap<String, Vec<Value>>,
+}
+
+/// Which points of a scene are measured by one call, rendering in turn, so that drift of the machine hits them alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Interleave {
+    /// None: a point renders alone.
+    Point,
+    /// Those of one series.
+    #[default]
+    Series,
+    /// All.
+    Scene,
+}
+
+/// What an error is counted against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Compare {
+    /// Full light transport.
+    #[default]
+    Full,
+    /// The light paths that the technique sets out to find.
+    Equal,
+}
+
+/// How an error is counted; see [`ImageErrors`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Metric {
+    /// Root of the mean squared difference, W/(m² sr).
+    Rmse,
+    /// The same over the mean of the reference.
+    #[default]
+    Rrmse,
+    /// Mean of the squared relative difference.
+    Relmse,
+    /// Mean FLIP.
+    Flip,
+}
+
+/// A grid that cannot be read. One sentence: which file, where in it, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum GridError {
+    /// The file cannot be read.
+    #[error("{path} cannot be read: {reason}", path = .path.display())]
+    Read {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the operating system says.
+        reason: String,
+    },
+    /// The file does not describe a grid.
+    #[error("{path}: {what}", path = .path.display())]
+    Wrong {
+        /// The file asked for.
+        path: PathBuf,
+        /// What is wrong in it.
+        what: String,
+    },
+}
+
+impl Grid {
+    /// Reads a TOML file; `docs/sweeps.md` says what it holds.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no TOML, or names something that does not exist.
+    pub fn load(path: &Path) -> Result<Grid, GridError> {
+        let text = fs::read_to_string(path)
+            .map_err(|error| GridError::Read { path: path.to_owned(), reason: error.to_string() })?;
+        Grid::parse(&text, path)
+    }
+
+    /// Reads the text of a TOML file; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// Those of [`Grid::load`], but for the reading.
+    pub fn parse(text: &str, path: &Path) -> Result<Grid, GridError> {
+        let wrong = |what: String| GridError::Wrong { path: path.to_owned(), what };
+        let grid = grid_file::parse(text).map_err(wrong)?;
+        grid.points().map_err(|error| wrong(error.to_string()))?;
+        Ok(grid)
+    }
+
+    /// The error of a run that the grid asks for; `None` if it was not compared.
+    pub fn error(&self, run: &Run) -> Option<f64> {
+        let errors = self.errors(run, self.compare)?;
+        Some(match self.metric {
+            Metric::Rmse => errors.rmse,
+            Metric::Rrmse => errors.rrmse,
+            Metric::Relmse => errors.relmse,
+            Metric::Flip => errors.flip,
+        })
+    }
+
+    /// All errors of the grid's entry, against what `compare` says.
+    pub fn errors<'a>(&self, run: &'a Run, compare: Compare) -> Option<&'a ImageErrors> {
+        let entries = match compare {
+            Compare::Full => &run.error_full,
+            Compare::Equal => &run.error,
+        };
+        entries.as_ref()?.get(&self.entry)
+    }
+
+    /// The relative noise of what the entry of a run was compared with; `None` if it was not.
+    pub fn noise(&self, run: &Run, compare: Compare) -> Option<f64> {
+        let entries = match compare {
+            Compare::Full => &run.noise_full,
+            Compare::Equal => &run.noise,
+        };
+        entries.as_ref()?.get(&self.entry).copied()
+    }
+
+    /// What the error is, for a title: `relative RMSE of the image against full light transport`.
+    pub fn error_words(&self) -> String {
+        let entry = match self.entry.as_str() {
+            "image" => "the image".to_owned(),
+            "covered" => "the covered pixels".to_owned(),
+            slot => format!("the {slot} slot"),
+        };
+        let against = match self.compare {
+            Compare::Full => "full light transport",
+            Compare::Equal => "equal light paths",
+        };
+        format!("{} of {entry} against {against}", self.metric_words())
+    }
+
+    /// How the error is counted, for an axis.
+    pub fn metric_words(&self) -> &'static str {
+        match self.metric {
+            Metric::Rmse => "RMSE",
+            Metric::Rrmse => "relative RMSE",
+            Metric::Relmse => "relMSE",
+            Metric::Flip => "mean FLIP",
+        }
+    }
+
+    /// The entries that an error can be of.
+    pub fn entries() -> Vec<&'static str> {
+        ["image", "covered"].into_iter().chain(Slot::ALL.into_iter().map(Slot::name)).collect()
+    }
+}
+
+impl GridScene {
+    /// Whether there is such a scene, found out before the work on others; `folder` is where the grid's file lies.
+    ///
+    /// # Errors
+    /// A sentence: there is no such file or no built-in scene of this name.
+    pub fn find(&self, folder: &Path) -> Result<(), String> {
+        let spec = self.spec(folder);
+        if self.is_file() && !Path::new(&spec).is_file() {
+            return Err(format!("scene {:?}: there is no file {spec}", self.name));
+        }
+        if !self.is_file() && !builtin_names().contains(&spec.as_str()) {
+            let known = builtin_names().join(", ");
+            let advice = "a file ends in .gltf or .glb";
+            return Err(format!(
+                "scene {:?}: there is no built-in scene {spec:?}, and {advice}; scenes: {known}",
+                self.name
+            ));
+        }
+        Ok(())
+    }
+
+    fn is_file(&self) -> bool {
+        let lower = self.path.to_ascii_lowercase();
+        lower.ends_with(".glb") || lower.ends_with(".gltf")
+    }
+
+    /// What a command line would call it.
+    fn spec(&self, folder: &Path) -> String {
+        if self.is_file() { folder.join(&self.path).to_string_lossy().into_owned() } else { self.path.clone() }
+    }
+
+    /// Opens the scene and adds its lights. A file's path is seen from `folder`, where the grid's file lies.
+    ///
+    /// # Errors
+    /// Those of [`Scene::open`] and of the lights, as a sentence.
+    pub fn open(&self, folder: &Path) -> Result<Scene, String> {
+        let said = |error: SceneError| error.to_string();
+        let mut scene = Scene::open(&self.spec(folder)).map_err(said)?;
+        for light in &self.light {
+            scene.add_light_spec(&LightSpec::parse(light)?).map_err(said)?;
+        }
+        if let Some(sky) = self.sky {
+            scene.set_sky(sky);
+        }
+        Ok(scene)
+    }
+}

@@ -1,0 +1,32 @@
+//! Sweeps: time against error over a grid of techniques, presets and settings, on several scenes.
+//!
+//! ```text
+//! TOML ──▶ grid ──▶ points ──▶ execute ──▶ result ──▶ lines · pareto ──▶ table · csv · plot
+//!                  (the product,  (groups, saved  (JSON, resumed,
+//!                   ids, shards)   one by one)     merged)
+//! ```
+
+mod canvas;
+mod chart;
+mod csv;
+mod execute;
+mod fit;
+mod grid;
+mod grid_file;
+mod lines;
+mod pareto;
+mod plot;
+mod points;
+mod result;
+mod text;
+
+pub use csv::csv;
+pub use execute::{Group, Outcomes, groups, run};
+pub use fit::{EqualTime, equal_time, slope};
+pub use grid::{Compare, Grid, GridError, GridScene, Interleave, Metric, Series};
+pub use lines::{Line, Mark, lines};
+pub use pareto::pareto_front;
+pub use plot::plot;
+pub use points::{Point, PointsError, Shard};
+pub use result::{Measured, PointFailure, Sweep, SweepError};
+pub use text::scene_text;

@@ -1,0 +1,120 @@
+//! A scene's points as a table for a terminal, and what they come to.
+
+use super::fit::{EqualTime, equal_time, slope};
+use super::grid::Compare;
+use super::lines::{Line, Mark, lines};
+use super::points::written;
+use super::result::Sweep;
+use crate::bench::tables::table;
+use crate::bench::units;
+
+/// All points of a scene, and below them the slopes of its lines; empty if there are none.
+pub fn scene_text(sweep: &Sweep, scene: &str) -> String {
+    let lines = lines(sweep, scene);
+    let Some(first) = lines.iter().flat_map(|line| &line.marks).next() else { return String::new() };
+    let [width, height] = first.measured.run.size;
+    let shown = match sweep.grid.reference {
+        Some(_) => sweep.grid.error_words(),
+        None => "no reference".to_owned(),
+    };
+    let mut out = format!("{scene}: {width}x{height}, {shown}\n{}\n", points_table(sweep, &lines));
+    if lines.iter().any(|line| line.marks.len() > 1) {
+        out += &format!("\n{}\n", lines_table(&lines));
+    }
+    out
+}
+
+fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
+    let header = ["series", "values", "frame ms", "rrmse equal", "rrmse full", "flip", "Pareto"];
+    let mut table = table(&header, &[2, 3, 4, 5]);
+    for line in lines {
+        for mark in &line.marks {
+            table.add_row(point_cells(sweep, mark));
+        }
+    }
+    table.trim_fmt()
+}
+
+fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> [String; 7] {
+    let measured = mark.measured;
+    let errors = |compare| sweep.grid.errors(&measured.run, compare);
+    let values = measured.values.iter().map(|(key, value)| format!("{key} {}", written(value)));
+    [
+        measured.series.clone(),
+        values.collect::<Vec<_>>().join(", "),
+        units::milliseconds(mark.time_ms),
+        optional(errors(Compare::Equal).map(|errors| errors.rrmse)),
+        optional(errors(Compare::Full).map(|errors| errors.rrmse)),
+        optional(errors(sweep.grid.compare).map(|errors| errors.flip)),
+        if mark.pareto { "*" } else { "" }.to_owned(),
+    ]
+}
+
+fn lines_table(lines: &[Line<'_>]) -> String {
+    let equal = equal_time(lines);
+    let at = equal.as_ref().map(|equal| format!("error at {} ms", units::milliseconds(equal.time_ms)));
+    let mut header = vec!["line", "error ~ time^", "time ~ value^"];
+    header.extend(at.as_deref());
+    let mut table = table(&header, &[1, 2, 3][..header.len() - 1]);
+    for (index, line) in lines.iter().enumerate() {
+        let exponent = |pairs: &[(f64, f64)]| slope(pairs).map(|slope| format!("{slope:.2}")).unwrap_or_default();
+        let mut cells = vec![label(line), exponent(&line.pairs()), exponent(&line.value_times())];
+        if let Some(EqualTime { errors, .. }) = &equal {
+            cells.push(optional(errors[index]));
+        }
+        table.add_row(cells);
+    }
+    table.trim_fmt()
+}
+
+/// `rsm` or `rsm (preset high)`.
+fn label(line: &Line<'_>) -> String {
+    if line.fixed.is_empty() { line.name.to_owned() } else { format!("{} ({})", line.name, line.fixed_words()) }
+}
+
+/// An error with three digits that count.
+fn optional(error: Option<f64>) -> String {
+    let Some(error) = error else { return String::new() };
+    let decimals = if error > 0.0 && error < 1.0 { (2 - error.log10().floor() as i32).clamp(3, 9) as usize } else { 3 };
+    format!("{error:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::sweep::execute::tests::whole;
+
+    #[test]
+    fn a_scene_is_a_row_a_point_and_a_row_a_line() {
+        let sweep = whole();
+        let text = scene_text(&sweep, "ring");
+        assert!(text.starts_with("ring: 256x256, relative RMSE of the image against full light transport\n"), "{text}");
+        let rows: Vec<&str> = text.lines().filter(|line| line.contains("rsm.vpls ")).collect();
+        assert_eq!(rows.len(), 5, "{text}");
+        // 16 VPLs of maps of 512²: 0.01 · 8192^0.9 ms; errors 10 · 8192^-0.5, and 0.05 more.
+        for words in ["rsm.vpls 16", "33.27", "0.110", "0.160", "*"] {
+            assert!(rows[0].contains(words), "{words} is not in {}", rows[0]);
+        }
+        let slopes: Vec<&str> =
+            text.lines().filter(|line| line.starts_with(" gathered") && !line.contains("vpls")).collect();
+        assert!(slopes.len() == 1 && slopes[0].contains("0.90"), "{text}");
+        assert_eq!(scene_text(&sweep, "maze"), "");
+    }
+
+    #[test]
+    fn without_a_reference_there_are_times_alone() {
+        let mut sweep = whole();
+        for measured in &mut sweep.points {
+            (measured.run.error, measured.run.error_full) = (None, None);
+        }
+        sweep.grid.reference = None;
+        let text = scene_text(&sweep, "ring");
+        assert!(text.contains("no reference") && text.contains("0.90") && !text.contains('*'), "{text}");
+    }
+
+    #[test]
+    fn errors_have_three_digits() {
+        let texts = [Some(1.23456), Some(0.0123456), Some(0.000123456), Some(0.0), None].map(optional);
+        assert_eq!(texts, ["1.235", "0.0123", "0.000123", "0.000", ""]);
+    }
+}

@@ -1,0 +1,94 @@
+//! A reference to compare with: its images and how noisy they are.
+
+use std::collections::BTreeMap;
+
+use super::{Noise, ReferenceFile, ReferenceKey};
+use crate::renderer::{ColorImage, Slot};
+
+/// The name of the sum of all slots among the parts of [`Reference::noise`].
+pub const IMAGE: &str = "image";
+
+/// A reference: means over all of its samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// What tells it from other references.
+    pub key: ReferenceKey,
+    /// Samples of every pixel, of both halves together.
+    pub spp: u32,
+    /// All slots.
+    pub slots: BTreeMap<Slot, ColorImage>,
+    /// The sum of all slots.
+    pub image: ColorImage,
+    /// Half the difference of the halves' means, slot by slot: what the noise is measured by.
+    pub half_differences: BTreeMap<Slot, ColorImage>,
+    /// The noise of every slot by its name, and of the `image`.
+    pub noise: BTreeMap<String, Noise>,
+    /// Time that the samples took, seconds, on all machines together.
+    pub seconds: f64,
+    /// Samples of pixels per second.
+    pub samples_per_second: f64,
+    /// Rays per second; 0 if they were not counted.
+    pub rays_per_second: f64,
+    /// The devices that made the samples.
+    pub devices: Vec<String>,
+}
+
+impl Reference {
+    pub(crate) fn of(file: &ReferenceFile) -> Reference {
+        let size = file.about.size;
+        let means = file.state.means();
+        let image = ColorImage { size, pixels: means.image };
+        let images = |all: Vec<Vec<[f32; 3]>>| {
+            Slot::ALL.into_iter().zip(all).map(|(slot, pixels)| (slot, ColorImage { size, pixels })).collect()
+        };
+        let samples = f64::from(file.spp()) * f64::from(size[0]) * f64::from(size[1]);
+        let mut reference = Reference {
+            key: file.about.key.clone(),
+            spp: file.spp(),
+            slots: images(means.slots),
+            image,
+            half_differences: images(means.noise),
+            noise: BTreeMap::new(),
+            seconds: file.spent.seconds,
+            samples_per_second: file.spent.rate(samples),
+            rays_per_second: file.spent.rate(file.spent.rays as f64),
+            devices: file.spent.devices.clone(),
+        };
+        let mut noise: BTreeMap<String, Noise> =
+            Slot::ALL.into_iter().map(|slot| (slot.name().to_owned(), reference.noise_of(&[slot]))).collect();
+        noise.insert(IMAGE.to_owned(), reference.noise_of(&Slot::ALL));
+        reference.noise = noise;
+        reference
+    }
+
+    /// The noise of the sum of some slots. Slots are not independent of each other, so it does not follow from their own.
+    pub fn noise_of(&self, slots: &[Slot]) -> Noise {
+        let (images, differences) = (pixels(&self.slots, slots), pixels(&self.half_differences, slots));
+        Noise::of_sum(&images, &differences)
+    }
+
+    /// The sum of some slots.
+    pub fn sum_of(&self, slots: &[Slot]) -> ColorImage {
+        sum(self.image.size, slots.iter().filter_map(|slot| self.slots.get(slot)))
+    }
+
+    /// The noise of the image: `rrmse` of [`Reference::noise`].
+    pub fn image_noise(&self) -> Noise {
+        self.noise.get(IMAGE).copied().unwrap_or_default()
+    }
+}
+
+fn pixels<'a>(images: &'a BTreeMap<Slot, ColorImage>, slots: &[Slot]) -> Vec<&'a [[f32; 3]]> {
+    slots.iter().filter_map(|slot| Some(&images.get(slot)?.pixels[..])).collect()
+}
+
+/// The sum of some images of one size.
+pub(crate) fn sum<'a>(size: [u32; 2], images: impl Iterator<Item = &'a ColorImage>) -> ColorImage {
+    let mut pixels = vec![[0.0_f32; 3]; size[0] as usize * size[1] as usize];
+    for image in images {
+        for (sum, pixel) in pixels.iter_mut().zip(&image.pixels) {
+            *sum = std::array::from_fn(|channel| sum[channel] + pixel[channel]);
+        }
+    }
+    ColorImage { size, pixels }
+}
