@@ -7,9 +7,9 @@
 
 // Adds the photons around one measurement point (Hachisuka & Jensen 2009, eq. 3; the adjoint of the shading normal as in particle/camera.comp),
 //
-//   L = β/P(D) Σ f_D(l, v) |l·n_s|/|l·n_p| Φ / (π r² N)        W/(m²·sr)
+//   L = β/P(D) Σ f_D(l, v) |l·n_s|/|l·n_p| Φ / (p π r² N)        W/(m²·sr)
 //
-// over those within r of it, on the same surface: whose normal is at most 60° off, so that no light comes around corners, and which are
+// with the share p of the disc that is surface (sppm/probe.comp), over those within r of it, on the same surface: whose normal is at most 60° off, so that no light comes around corners, and which are
 // within r/4 of the tangent plane, so that none comes from a surface before or behind, while one that curves with a radius above 2r
 // loses nothing. Sums are 64-bit integers in units of 1/scale: whatever the order of the photons, the same sum.
 
@@ -60,6 +60,7 @@ struct Receiver {
     vec3 viewer;
     Matter matter;
     uint depth;
+    float inverse_share;  // 1/p
 };
 
 Receiver load_receiver(uint path) {
@@ -70,7 +71,7 @@ Receiver load_receiver(uint path) {
     Frame frame = frame_around(unpack_direction(b.w));
     return Receiver(
         uintBitsToFloat(a.xyz), unpack_direction(a.w), frame, local_viewer(frame, unpack_direction(c.y)),
-        Matter(uintBitsToFloat(b.xyz), vec3(layer.x), layer.y, 1.0, vec3(0.0), 1.0), c.z);
+        Matter(uintBitsToFloat(b.xyz), vec3(layer.x), layer.y, 1.0, vec3(0.0), 1.0), c.z, float(c.w));
 }
 
 // What one photon adds; null if it is none of the receiver's.
@@ -89,7 +90,7 @@ vec3 light_of_photon(Receiver receiver, int photon, out bool specular) {
     }
     vec3 direction = to_local(receiver.frame, unpack_direction(b.w));
     vec3 scattered = diffuse_lobe(receiver.matter, receiver.viewer, direction, 1.0).value;
-    return scattered * uintBitsToFloat(b.xyz) * (push.density / uintBitsToFloat(c.w));
+    return scattered * uintBitsToFloat(b.xyz) * (push.density * receiver.inverse_share / uintBitsToFloat(c.w));
 }
 
 void gather(uint path) {

@@ -4,6 +4,7 @@
 //! no matter.
 
 use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS};
+use super::traced_scene::TracedScene;
 use super::tracer::View;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
@@ -93,6 +94,29 @@ impl PhotonMap {
             push: shaders::MeasurePush { depth, reserved: 0 },
         };
         graph.pass("sppm/measure", measure).threads_indirect(paths.alive, 0);
+    }
+
+    /// Finds how much of each measurement point's disc is surface.
+    pub(super) fn probe(&self, graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, disc: Disc) {
+        let probe = shaders::Probe {
+            point_queue: self.point_queue.texels(WORD),
+            path_seeds: paths.seeds.texels(PAIR),
+            sobol: paths.sobol.clone(),
+            bvh_nodes: paths.scene.bvh_nodes.clone(),
+            bvh_triangles: paths.scene.bvh_triangles.clone(),
+            points: self.points.read_write(),
+            triangles: paths.scene.triangles.clone(),
+            corner_colors: paths.scene.corner_colors.clone(),
+            corner_texcoords: paths.scene.corner_texcoords.clone(),
+            materials: paths.scene.materials.clone(),
+            material_textures: paths.scene.material_textures.clone(),
+            texture_table: paths.scene.texture_table.clone(),
+            texels: paths.scene.texels.clone(),
+            alpha_masks: u32::from(scene.facts.alpha_masked),
+            vertex_colors: u32::from(scene.facts.vertex_colors),
+            push: shaders::ProbePush { radius: disc.radius, reserved: 0 },
+        };
+        graph.pass("sppm/probe", probe).threads_indirect(self.point_queue, 0);
     }
 
     /// Leaves photons at the vertices number `depth` of light paths.

@@ -96,11 +96,13 @@ impl SppmSource {
             let seed = seed_of_half(self.view.seed, half);
             for sample in first..first + count {
                 let wave = Wave { first_block, block_count, sample_count: 1, first_sample: sample, seed };
-                let radius = radius_of_pass(first_radius(&self.scene, &self.view), 2 * u64::from(sample) + u64::from(half) + 1);
+                let radius =
+                    radius_of_pass(first_radius(&self.scene, &self.view), 2 * u64::from(sample) + u64::from(half) + 1);
                 let disc = Disc { radius: radius as f32, scale: scale_of(&self.scene) };
                 let pass = Pass { wave, half, disc, first: sample == first };
                 self.walk_from_camera(&pass)?;
                 if self.scene.emitter_count > 0 && self.view.bounces != Some(0) {
+                    self.probe(&pass)?;
                     self.walk_from_lights(&pass)?;
                 }
                 let texels = self.add_pass(&pass, sample + 1 == first + count)?;
@@ -190,6 +192,15 @@ impl SppmSource {
             }
         }
         if photons > 0 { self.gather(pass) } else { Ok(()) }
+    }
+
+    /// Finds how much surface there is around each measurement point.
+    fn probe(&mut self, pass: &Pass) -> Result<(), VulkanError> {
+        let (mut graph, scene, _, paths, map, _) = self.declare(&pass.wave);
+        map.probe(&mut graph, &paths, scene, pass.disc);
+        map.want(&mut graph);
+        paths.want(&mut graph);
+        graph.run(Timing::Frame).map(|_| ())
     }
 
     fn gather(&mut self, pass: &Pass) -> Result<(), VulkanError> {

@@ -316,7 +316,12 @@ impl TraceCost {
 }
 
 /// Puts the sums of a run of blocks where their pixels are (glsl/path/pixels.glsl).
-pub(super) fn scatter_sums(sums: &mut SlotSums, texels: &[[f32; 4]], size: [u32; 2], [first_block, block_count]: [u32; 2]) {
+pub(super) fn scatter_sums(
+    sums: &mut SlotSums,
+    texels: &[[f32; 4]],
+    size: [u32; 2],
+    [first_block, block_count]: [u32; 2],
+) {
     let [width, height] = size;
     let blocks_per_row = width.div_ceil(8);
     let paths = 64 * block_count;
