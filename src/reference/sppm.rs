@@ -28,7 +28,7 @@ use super::traced_scene::TracedScene;
 use super::tracer::{View, scatter_sums, seed_of_half, seed_of_sample};
 use super::{ReferenceRequest, SampleSource, SlotSums};
 use crate::graph::{Executed, Graph, ReadBack, Store};
-use crate::renderer::{Context, Error, Slot, Timing};
+use crate::renderer::{Context, Error, Timing};
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
 
