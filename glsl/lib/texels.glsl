@@ -1,4 +1,4 @@
-// Textures as one buffer of 8-bit texels (samplerBuffer, rgba8 unorm), mip levels included, so that a ray can read any of them
+// Textures as one buffer of linear texels (samplerBuffer, rgba16f), mip levels included, so that a ray can read any of them
 // without descriptors of its own. What a sampler would do, in arithmetic.
 //
 // texture_table, one texel (rgba32ui) a texture: first texel · width and height (16 bits each) · flags · number of levels
@@ -12,7 +12,6 @@ const uint TEXTURE_CLAMP_U = 2u;
 const uint TEXTURE_MIRROR_V = 4u;
 const uint TEXTURE_CLAMP_V = 8u;
 const uint TEXTURE_NEAREST = 16u;
-const uint TEXTURE_SRGB = 32u;
 
 int wrapped(int coordinate, int size, bool mirror, bool clamped) {
     if (clamped) {
@@ -21,13 +20,6 @@ int wrapped(int coordinate, int size, bool mirror, bool clamped) {
     int period = mirror ? 2 * size : size;
     int inside = coordinate - period * int(floor((float(coordinate) + 0.5) / float(period)));
     return mirror && inside >= size ? 2 * size - 1 - inside : inside;
-}
-
-vec4 decoded_texel(samplerBuffer texels, int index, bool srgb) {
-    vec4 texel = texelFetch(texels, index);
-    // IEC 61966-2-1
-    vec3 linear = mix(texel.rgb / 12.92, pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), greaterThan(texel.rgb, vec3(0.04045)));
-    return srgb ? vec4(linear, texel.a) : texel;
 }
 
 vec4 sample_level(samplerBuffer texels, uvec4 entry, int level, vec2 uv) {
@@ -47,7 +39,6 @@ vec4 sample_level(samplerBuffer texels, uvec4 entry, int level, vec2 uv) {
         corner[i] = wrapped(low.x + i, size.x, (entry.z & TEXTURE_MIRROR_U) != 0u, (entry.z & TEXTURE_CLAMP_U) != 0u);
         corner[2 + i] = wrapped(low.y + i, size.y, (entry.z & TEXTURE_MIRROR_V) != 0u, (entry.z & TEXTURE_CLAMP_V) != 0u);
     }
-    bool srgb = (entry.z & TEXTURE_SRGB) != 0u;
     vec4 sum = vec4(0.0);
     [[dont_unroll]] for (int i = 0; i < 4; ++i) {
         int column = i & 1;
@@ -55,13 +46,13 @@ vec4 sample_level(samplerBuffer texels, uvec4 entry, int level, vec2 uv) {
         float weight = (column == 0 ? 1.0 - part.x : part.x) * (row == 0 ? 1.0 - part.y : part.y);
         int x = column == 0 ? corner.x : corner.y;
         int y = row == 0 ? corner.z : corner.w;
-        sum += weight * decoded_texel(texels, first + y * size.x + x, srgb);
+        sum += weight * texelFetch(texels, first + y * size.x + x);
     }
     return sum;
 }
 
-// Two levels when the footprint is wider than a texel. `footprint`: the longer side of a pixel in texture coordinates · texels of the
-// finest level is what it covers; 0: the finest level.
+// Trilinear: `dx` and `dy` are the steps of the texture coordinates from pixel to pixel, the longer of which chooses the levels; with
+// 0 it is the finest.
 vec4 sample_texels(samplerBuffer texels, usamplerBuffer texture_table, uint index, vec2 uv, vec2 dx, vec2 dy) {
     uvec4 entry = texelFetch(texture_table, int(index));
     vec2 size = vec2(entry.y & 0xFFFFu, entry.y >> 16);

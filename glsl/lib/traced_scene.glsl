@@ -8,17 +8,23 @@
 
 const uint TRIANGLE_FLAT = 0x80000000u;  // no vertex normals
 
-// Three texels (rgba32ui) with the corners, counter-clockwise as seen from the front, and one with the rest:
-// corner 0 | material and TRIANGLE_FLAT · edge to corner 1 | number of corner 0 · edge to corner 2 | number of corner 1 ·
-// number of corner 2 | density of points that next-event estimation takes on it, 1/m²
+// What every hit needs of a triangle lies together, in four texels (rgba32ui), corners counter-clockwise as seen from the front:
+//
+//   corner 0          | material and TRIANGLE_FLAT
+//   edge to corner 1  | normal at corner 0           normals: packed directions
+//   edge to corner 2  | normal at corner 1
+//   normal at corner 2 | density of points that next-event estimation takes on it, 1/m² | unused | unused
+//
+// Lists of corners (texture coordinates, colors, tangents) hold three elements a triangle.
 struct Triangle {
     vec3 origin;
     vec3 edge1;
     vec3 edge2;
     uint material;
     bool flat_normals;
-    uvec3 corners;
+    uvec3 normals;
     float light_density;
+    int first_corner;
 };
 
 Triangle load_triangle(usamplerBuffer triangles, uint index) {
@@ -26,10 +32,16 @@ Triangle load_triangle(usamplerBuffer triangles, uint index) {
     uvec4 a = texelFetch(triangles, first);
     uvec4 b = texelFetch(triangles, first + 1);
     uvec4 c = texelFetch(triangles, first + 2);
-    uvec4 d = texelFetch(triangles, first + 3);
+    uvec2 d = texelFetch(triangles, first + 3).xy;
     return Triangle(
         uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w & ~TRIANGLE_FLAT,
-        (a.w & TRIANGLE_FLAT) != 0u, uvec3(b.w, c.w, d.x), uintBitsToFloat(d.y));
+        (a.w & TRIANGLE_FLAT) != 0u, uvec3(b.w, c.w, d.x), uintBitsToFloat(d.y), 3 * int(index));
+}
+
+// An attribute at a point of the triangle with the weights of its corners.
+vec4 interpolated(samplerBuffer corners, Triangle triangle, vec3 weights) {
+    return weights.x * texelFetch(corners, triangle.first_corner) + weights.y * texelFetch(corners, triangle.first_corner + 1)
+           + weights.z * texelFetch(corners, triangle.first_corner + 2);
 }
 
 vec3 front_normal(Triangle triangle) {

@@ -2,7 +2,6 @@
 #include "lib/prelude.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
-#include "lib/texels.glsl"
 #include "path/emitters.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -15,9 +14,6 @@
 // path would. Only what falls within R of the scene's middle of a directional light counts.
 
 layout(local_size_x = 64) in;
-
-// 1: the radiance of some emissive triangles is textured.
-layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer sobol;
 layout(set = 0, binding = 1) uniform usamplerBuffer emitters;
@@ -36,6 +32,7 @@ layout(set = 0, binding = 13) buffer QueueBlock { uint active_paths[]; };
 layout(set = 0, binding = 14) uniform usamplerBuffer bvh_nodes;
 
 #include "lib/ray_offset.glsl"
+#include "path/emissive_points.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
@@ -86,15 +83,7 @@ Start start_at_triangle(Emitter emitter, vec2 place_random, vec4 random) {
     vec3 normal = front_normal(triangle);
     normal = both_sides && random.z < 0.5 ? -normal : normal;
     vec3 local = sample_cosine_hemisphere(random.xy);
-    vec3 radiance = material.emissive;
-    if (EMISSIVE_TEXTURES != 0u && (material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
-        vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
-                    + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
-                    + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
-        TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
-        vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
-        radiance *= sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0)).rgb;
-    }
+    vec3 radiance = emissive_radiance(triangle, material, place);
     float sides = both_sides ? 2.0 : 1.0;
     vec3 position = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2;
     float cosine = max(local.z, 1e-6);

@@ -29,14 +29,10 @@ bool accepts_hit(uint index, vec2 barycentric) {
     vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
     float alpha = material.base_color.a;
     if (VERTEX_COLORS != 0u) {
-        alpha *= dot(weights, vec3(
-            texelFetch(corner_colors, int(triangle.corners.x)).a, texelFetch(corner_colors, int(triangle.corners.y)).a,
-            texelFetch(corner_colors, int(triangle.corners.z)).a));
+        alpha *= interpolated(corner_colors, triangle, weights).a;
     }
     if ((material.flags & MATERIAL_BASE_COLOR_TEXTURE) != 0u) {
-        vec4 sets = weights.x * texelFetch(corner_texcoords, int(triangle.corners.x))
-                    + weights.y * texelFetch(corner_texcoords, int(triangle.corners.y))
-                    + weights.z * texelFetch(corner_texcoords, int(triangle.corners.z));
+        vec4 sets = interpolated(corner_texcoords, triangle, weights);
         TextureUse use = load_texture_use(material_textures, triangle.material, USE_BASE_COLOR);
         vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
         uvec4 entry = texelFetch(texture_table, int(use.layer));

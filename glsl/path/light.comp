@@ -1,7 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "lib/sobol.glsl"
-#include "lib/texels.glsl"
 #include "path/emitters.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -18,8 +17,6 @@ layout(local_size_x = 64) in;
 
 // 1: lights send out paths of their own.
 layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
-// 1: the radiance of some emissive triangles is textured.
-layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
 // Beyond 0, photons carry the light of all emitters but lights with a range to vertices behind the first diffuse one (state.glsl).
 layout(constant_id = 4) const uint PHOTONS = 0u;
 
@@ -45,6 +42,7 @@ layout(set = 0, binding = 17) buffer QueueBlock { uint connections[]; };
 layout(set = 0, binding = 18) uniform usamplerBuffer bvh_nodes;
 
 #include "lib/ray_offset.glsl"
+#include "path/emissive_points.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
@@ -72,15 +70,6 @@ LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
     return LightSample(illumination.to_light, distance, illumination.irradiance / emitter.probability, 0.0, emission);
 }
 
-vec3 emissive_texel(Triangle triangle, vec2 place) {
-    vec4 sets = (1.0 - place.x - place.y) * texelFetch(corner_texcoords, int(triangle.corners.x))
-                + place.x * texelFetch(corner_texcoords, int(triangle.corners.y))
-                + place.y * texelFetch(corner_texcoords, int(triangle.corners.z));
-    TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
-    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
-    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0)).rgb;
-}
-
 LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
@@ -92,12 +81,9 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
     float next = triangle.light_density * distance2 / max(cosine, 1e-9);
-    vec3 radiance = material.emissive;
-    if (EMISSIVE_TEXTURES != 0u && (material.flags & MATERIAL_EMISSIVE_TEXTURE) != 0u) {
-        radiance *= emissive_texel(triangle, place);
-    }
+    vec3 irradiance = cosine > 0.0 ? emissive_radiance(triangle, material, place) / next : vec3(0.0);
     return LightSample(
-        to_light, sqrt(distance2) * 0.9999, cosine > 0.0 ? radiance / next : vec3(0.0), next,
+        to_light, sqrt(distance2), irradiance, next,
         cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);
 }
 
@@ -105,6 +91,13 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
 float weight_of_next(LightSample light, float density, float light_ratio, float reverse) {
     float hit = light.next > 0.0 ? density / light.next : 0.0;
     return 1.0 / (1.0 + hit + light_ratio * reverse);
+}
+
+LightSample light_from(Emitter emitter, vec3 position_rs, vec2 random) {
+    if (emitter.is_triangle) {
+        return sample_triangle(emitter, position_rs, random);
+    }
+    return sample_punctual(emitter, position_rs);
 }
 
 bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2]) {
@@ -118,12 +111,7 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
             return false;
         }
     }
-    LightSample light;
-    if (emitter.is_triangle) {
-        light = sample_triangle(emitter, vertex.position_rs, random.yz);
-    } else {
-        light = sample_punctual(emitter, vertex.position_rs);
-    }
+    LightSample light = light_from(emitter, vertex.position_rs, random.yz);
     float side = dot(vertex.geometric_normal, light.to_light);
     Frame frame = frame_around(vertex.normal);
     vec3 direction = to_local(frame, light.to_light);
@@ -150,8 +138,12 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, light_ratio, reverse.x);
     light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, light_ratio, reverse.y);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
-    connection[0] = vec4(origin, light.distance);
-    connection[1] = vec4(light.to_light, 0.0);
+    // Aimed from where the ray starts: an emitter close by must not hide itself.
+    bool far = light.distance > 1e37;
+    vec3 way = far ? light.to_light : vertex.position_rs + light.to_light * light.distance - origin;
+    float distance = length(way);
+    connection[0] = vec4(origin, far ? light.distance : distance * (emitter.is_triangle ? 0.9999 : 1.0));
+    connection[1] = vec4(way / max(distance, 1e-30), 0.0);
     return max3(light_of_lobes[0]) + max3(light_of_lobes[1]) > 0.0;
 }
 

@@ -32,7 +32,6 @@ layout(set = 0, binding = 2) uniform samplerBuffer path_states;
 layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
 layout(set = 0, binding = 4) uniform samplerBuffer path_hits;
 layout(set = 0, binding = 5) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 6) uniform samplerBuffer corner_normals;    // rgba32f
 layout(set = 0, binding = 7) uniform samplerBuffer corner_colors;     // rgba8 unorm
 layout(set = 0, binding = 8) uniform samplerBuffer corner_texcoords;  // rgba32f: sets 0 and 1
 layout(set = 0, binding = 9) uniform samplerBuffer corner_tangents;   // rgba32f
@@ -61,11 +60,6 @@ struct Footprint {
     vec4 dy;
 };
 
-vec4 interpolated(samplerBuffer corners, Triangle triangle, vec3 weights) {
-    return weights.x * texelFetch(corners, int(triangle.corners.x)) + weights.y * texelFetch(corners, int(triangle.corners.y))
-           + weights.z * texelFetch(corners, int(triangle.corners.z));
-}
-
 // The change of the texture coordinates from this pixel to the next one, where the neighbour's ray meets the plane of the triangle.
 vec4 texcoord_step(Triangle triangle, vec3 position, vec3 ray_step) {
     vec3 normal = cross(triangle.edge1, triangle.edge2);
@@ -79,9 +73,7 @@ vec4 texcoord_step(Triangle triangle, vec3 position, vec3 ray_step) {
     float inverse = 1.0 / max(dot(normal, normal), 1e-37);
     float u = dot(cross(moved, triangle.edge2), normal) * inverse;
     float v = dot(cross(triangle.edge1, moved), normal) * inverse;
-    vec4 origin = texelFetch(corner_texcoords, int(triangle.corners.x));
-    return u * (texelFetch(corner_texcoords, int(triangle.corners.y)) - origin)
-           + v * (texelFetch(corner_texcoords, int(triangle.corners.z)) - origin);
+    return interpolated(corner_texcoords, triangle, vec3(-u - v, u, v));
 }
 
 vec2 set_of(uint texcoord, vec4 sets) {
@@ -222,7 +214,9 @@ bool meet_surface(uint path) {
     // ---- the vertex
     vec3 normal = geometric_normal;
     if (!triangle.flat_normals) {
-        vec3 vertex_normal = normalize_or(interpolated(corner_normals, triangle, weights).xyz, face);
+        vec3 vertex_normal = normalize_or(
+            weights.x * unpack_direction(triangle.normals.x) + weights.y * unpack_direction(triangle.normals.y)
+                + weights.z * unpack_direction(triangle.normals.z), face);
         vec3 mapped = vertex_normal;
         if (NORMAL_MAPS != 0u && has_texture(material, MATERIAL_NORMAL_TEXTURE)) {
             vec4 tangent = interpolated(corner_tangents, triangle, weights);

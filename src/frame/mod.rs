@@ -10,9 +10,11 @@ pub(crate) mod gbuffer;
 pub(crate) mod geometry;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
+pub(crate) mod octahedral;
 pub(crate) mod scene_data;
 pub(crate) mod textures;
 pub(crate) mod tonemap;
+pub(crate) mod traced_direct;
 #[cfg(test)]
 pub(crate) mod twins;
 pub(crate) mod view_layout;

@@ -8,6 +8,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::{IVec2, UVec2, UVec4, Vec2, Vec2Swizzles as _, Vec3, Vec4, Vec4Swizzles as _};
 
+pub(crate) use super::octahedral::{octahedral_encode, pack_direction, sign_not_zero};
+
 /// The smallest GGX α that the shaders evaluate (`lib/brdf.glsl`).
 pub(crate) const MINIMUM_ALPHA: f32 = 1e-3;
 
@@ -26,13 +28,6 @@ pub(crate) fn srgb_encode(linear: Vec3) -> Vec3 {
     Vec3::new(encode(linear.x), encode(linear.y), encode(linear.z))
 }
 
-/// A unit vector on the unfolded octahedron, both coordinates in −1 … 1 (`lib/octahedral.glsl`).
-#[must_use]
-pub(crate) fn octahedral_encode(direction: Vec3) -> Vec2 {
-    let square = Vec2::new(direction.x, direction.y) / direction.abs().element_sum();
-    if direction.z >= 0.0 { square } else { (Vec2::ONE - Vec2::new(square.y, square.x).abs()) * sign_not_zero(square) }
-}
-
 /// The point of the octahedron: its components' absolute values sum to one (`lib/octahedral.glsl`).
 #[must_use]
 pub(crate) fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
@@ -45,14 +40,6 @@ pub(crate) fn octahedral_decode_unnormalized(square: Vec2) -> Vec3 {
 #[must_use]
 pub(crate) fn octahedral_decode(square: Vec2) -> Vec3 {
     octahedral_decode_unnormalized(square).normalize()
-}
-
-/// A unit vector in 2 × snorm16, x in the low half (`lib/octahedral.glsl`).
-#[must_use]
-pub(crate) fn pack_direction(direction: Vec3) -> u32 {
-    let square = octahedral_encode(direction);
-    let snorm16 = |x: f32| u32::from(((x.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
-    snorm16(square.y) << 16 | snorm16(square.x)
 }
 
 /// The inverse of [`pack_direction`] (`lib/octahedral.glsl`).
@@ -261,10 +248,6 @@ pub(crate) fn tonemap_drago_scale(scaled_luminance: f32, scaled_maximum: f32, bi
     let m = scaled_maximum.max(l);
     let exponent = bias.ln() / 0.5_f32.ln();
     (l + 1.0).ln() / (2.0 + 8.0 * (l / m).powf(exponent)).ln() / (m + 1.0).log10() / l
-}
-
-fn sign_not_zero(v: Vec2) -> Vec2 {
-    Vec2::new(if v.x >= 0.0 { 1.0 } else { -1.0 }, if v.y >= 0.0 { 1.0 } else { -1.0 })
 }
 
 /// The low 16 bits as an IEEE half; only the positive finite ones that albedos are.

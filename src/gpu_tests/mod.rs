@@ -28,3 +28,4 @@ mod session;
 mod skipping;
 mod sppm;
 mod tonemap;
+mod traced_direct;

@@ -7,8 +7,9 @@ use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins;
 use crate::graph::{Graph, ReadBack};
-use crate::renderer::declare::{Declared, declare};
-use crate::renderer::{FrameRequest, Settings, Slot, Timing};
+use crate::reference::traced_scene::TracedScene;
+use crate::renderer::declare::{Declared, Prepared, declare};
+use crate::renderer::{DirectMethod, FrameRequest, Settings, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
 
@@ -34,8 +35,11 @@ pub(super) fn probe(
     let limit = device.limits().max_image_dimension2_d;
     let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
+    let traces = settings.methods.direct == DirectMethod::Traced;
+    let traced = traces.then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
+    let prepared = Prepared { scene, data: &data, lights: &set, traced: traced.as_ref() };
     let mut graph = Graph::new(&mut store);
-    let declared = declare(&mut graph, scene, &data, &set, settings, request);
+    let declared = declare(&mut graph, &prepared, settings, request);
     let wanted = wanted(&mut graph, &declared);
     let mut executed = graph.run(Timing::Frame).expect("a frame");
     let reads = wanted.into_iter().map(|read_back| executed.take(read_back)).collect();

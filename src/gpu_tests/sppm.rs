@@ -1,10 +1,13 @@
 //! Stochastic progressive photon mapping against path tracing and closed forms.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, view};
 use super::session::Session;
 use crate::reference::sppm::SppmSource;
+use crate::reference::traced_scene::TracedScene;
 use crate::reference::tracer::PathTracer;
 use crate::reference::{Estimator, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::renderer::Slot;
@@ -32,8 +35,9 @@ fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Op
 
 fn by_paths(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, samples: u32) -> SlotSums {
     let request = request(Estimator::Path, SIZE, camera.clone(), bounces);
-    let mut tracer = PathTracer::new(session.context.shared_device()).expect("a tracer");
-    tracer.prepare(scene).expect("a scene that fits");
+    let device = session.context.shared_device();
+    let mut tracer = PathTracer::new(device).expect("a tracer");
+    tracer.set_scene(Arc::new(TracedScene::new(device, scene).expect("a scene that fits")));
     let view = tracer.view(&request);
     tracer.sums(&view, 0, 0, samples).expect("sums")
 }

@@ -157,7 +157,7 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
         material_textures: paths.scene.material_textures.clone(),
         texture_table: paths.scene.texture_table.clone(),
         texels: paths.scene.texels.clone(),
-        alpha_masks: u32::from(scene.facts.alpha_masked),
+        alpha_masks: u32::from(scene.cutouts),
         vertex_colors: u32::from(scene.facts.vertex_colors),
         specular_lobes: variants.specular,
         push: shaders::ConnectPush { path_count: paths.capacity, reserved: 0 },

@@ -16,6 +16,10 @@ pub(super) struct EmitterTable {
     pub(super) light_densities: Vec<f32>,
     /// What all entries send out, W (luminance).
     pub(super) power: f64,
+    /// The same for emissive triangles alone.
+    pub(super) triangle_records: Vec<[u32; 4]>,
+    /// What those send out, W (luminance).
+    pub(super) triangle_power: f64,
 }
 
 struct Entry {
@@ -53,7 +57,11 @@ pub(super) fn emitter_table(
         let index = (entry.what & !TRIANGLE) as usize;
         light_densities[index] = (entry.power / total / triangles[index].area()) as f32;
     }
-    EmitterTable { records: alias_table(&entries, total), light_densities, power: total }
+    let records = alias_table(&entries, total);
+    entries.retain(|entry| entry.what & TRIANGLE != 0);
+    let triangle_power = entries.iter().map(|entry| entry.power).sum();
+    let triangle_records = alias_table(&entries, triangle_power);
+    EmitterTable { records, light_densities, power: total, triangle_records, triangle_power }
 }
 
 /// What an intensity times this is power.

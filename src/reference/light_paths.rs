@@ -184,7 +184,7 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, scen
         material_textures: paths.scene.material_textures.clone(),
         texture_table: paths.scene.texture_table.clone(),
         texels: paths.scene.texels.clone(),
-        alpha_masks: u32::from(scene.facts.alpha_masked),
+        alpha_masks: u32::from(scene.cutouts),
         vertex_colors: u32::from(scene.facts.vertex_colors),
         push: shaders::SplatPush { scale: splats.scale, reserved: 0 },
     };

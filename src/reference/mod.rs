@@ -30,7 +30,7 @@ pub(crate) mod sppm;
 #[cfg(test)]
 mod tests;
 mod texels;
-mod traced_scene;
+pub(crate) mod traced_scene;
 pub(crate) mod tracer;
 
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,6 @@
 use ash::vk;
 
 use super::PixelFilter;
-use super::sobol::sobol_points;
 use super::traced_scene::{TracedBindings, TracedScene};
 use super::tracer::View;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
@@ -86,7 +85,7 @@ pub(super) struct Paths {
 impl Paths {
     /// Buffers for `capacity` paths.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, view: &View, capacity: u32) -> Paths {
-        let variants = Variants::of(scene, view);
+        let (variants, bindings) = (Variants::of(scene, view), scene.import(graph));
         let paths = capacity as usize;
         let lobes = 1 + variants.specular as usize;
         let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
@@ -94,10 +93,10 @@ impl Paths {
         let totals = graph.buffer("path.totals", 4);
         graph.fill_buffer("path/clear-totals", totals, 0);
         Paths {
-            scene: scene.import(graph),
+            sobol: bindings.sobol.clone(),
+            scene: bindings,
             variants,
             camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
-            sobol: graph.upload("path.sobol", &sobol_points(), Dependence::NONE).texels(WORDS),
             rays: graph.buffer("path.rays", 2 * paths),
             states: graph.buffer("path.states", paths),
             flags: graph.buffer("path.flags", paths),
@@ -159,7 +158,7 @@ impl Paths {
             material_textures: self.scene.material_textures.clone(),
             texture_table: self.scene.texture_table.clone(),
             texels: self.scene.texels.clone(),
-            alpha_masks: u32::from(scene.facts.alpha_masked),
+            alpha_masks: u32::from(scene.cutouts),
             vertex_colors: u32::from(scene.facts.vertex_colors),
         };
         graph.pass(&walk.pass("intersect"), intersect).count("rays", active, 3).threads_indirect(active, 0);
@@ -177,7 +176,6 @@ impl Paths {
             path_flags: self.flags.texels(WORD),
             path_hits: self.hits.texels(FLOATS),
             triangles: self.scene.triangles.clone(),
-            corner_normals: self.scene.corner_normals.clone(),
             corner_colors: self.scene.corner_colors.clone(),
             corner_texcoords: self.scene.corner_texcoords.clone(),
             corner_tangents: self.scene.corner_tangents.clone(),

@@ -112,7 +112,7 @@ impl PhotonMap {
             material_textures: paths.scene.material_textures.clone(),
             texture_table: paths.scene.texture_table.clone(),
             texels: paths.scene.texels.clone(),
-            alpha_masks: u32::from(scene.facts.alpha_masked),
+            alpha_masks: u32::from(scene.cutouts),
             vertex_colors: u32::from(scene.facts.vertex_colors),
             push: shaders::ProbePush { radius: disc.radius, reserved: 0 },
         };

@@ -12,7 +12,6 @@ use super::camera_paths::{self, Sums, Wave};
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::paths::Paths;
 use super::traced_scene::TracedScene;
-pub(crate) use super::traced_scene::traced_key;
 use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::frame::camera::camera;
 use crate::graph::{Executed, Graph, ReadBack, Store};
@@ -42,7 +41,7 @@ pub(crate) struct TraceCost {
 /// Traces paths through one scene.
 pub(crate) struct PathTracer {
     store: Store,
-    scene: Option<TracedScene>,
+    scene: Option<Arc<TracedScene>>,
     timing: Timing,
     cost: TraceCost,
 }
@@ -80,17 +79,17 @@ impl PathTracer {
         Ok(PathTracer { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
     }
 
-    /// Brings the scene onto the device, if it is not there as it is now.
-    pub(crate) fn prepare(&mut self, scene: &Scene) -> Result<(), VulkanError> {
-        let key = traced_key(scene);
-        if self.scene.as_ref().is_none_or(|held| held.key != key) {
-            self.scene = None;
-            self.scene = Some(TracedScene::new(self.store.device(), scene)?);
-        }
-        Ok(())
+    /// Traces paths through this scene from now on.
+    pub(crate) fn set_scene(&mut self, scene: Arc<TracedScene>) {
+        self.scene = Some(scene);
     }
 
-    /// The picture that a request asks for of the prepared scene.
+    /// Gives its memory back, until a scene is set again.
+    pub(crate) fn release_scene(&mut self) {
+        self.scene = None;
+    }
+
+    /// The picture that a request asks for of the scene.
     pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
         View::new(request, origin)
@@ -120,7 +119,7 @@ impl PathTracer {
     /// Device memory, bytes, by piece; `scene` is the scene itself.
     pub(crate) fn memory_bytes(&self) -> std::collections::BTreeMap<String, u64> {
         let mut bytes = self.store.memory_by_piece();
-        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, TracedScene::bytes));
+        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, |scene| scene.bytes()));
         bytes
     }
 
@@ -137,7 +136,7 @@ impl PathTracer {
             let texels = self.trace_from_camera(view, [first_block, block_count], half, [first, count])?;
             scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
         }
-        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let scene = self.scene.as_ref().expect("set before it is traced");
         if scene.needs_light_paths(view.bounces) {
             self.trace_from_lights(view, half, [first, count], &mut sums)?;
         }
@@ -152,7 +151,7 @@ impl PathTracer {
         half: u32,
         [first, count]: [u32; 2],
     ) -> Result<Vec<[f32; 4]>, VulkanError> {
-        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let scene = self.scene.as_ref().expect("set before it is traced");
         let capacity = capacity(view, count);
         let samples_per_wave = (capacity / (64 * block_count)).min(count);
         let mut texels = Vec::new();
@@ -210,7 +209,7 @@ impl PathTracer {
         [first, count]: [u32; 2],
         sums: &mut SlotSums,
     ) -> Result<(), VulkanError> {
-        let scene = self.scene.as_ref().expect("prepared before it is traced");
+        let scene = self.scene.as_ref().expect("set before it is traced");
         let limit = self.store.device().limits().max_storage_buffer_range;
         let all = view.size[0] * view.size[1];
         let capacity = capacity(view, count);
@@ -351,7 +350,7 @@ impl PathSource {
     /// A scene that does not fit the device.
     pub(super) fn new(context: &Context, scene: &Scene, request: &ReferenceRequest) -> Result<PathSource, Error> {
         let mut tracer = PathTracer::new(context.shared_device())?;
-        tracer.prepare(scene)?;
+        tracer.set_scene(Arc::new(TracedScene::new(context.shared_device(), scene)?));
         let view = tracer.view(request);
         Ok(PathSource { tracer, view })
     }

@@ -11,8 +11,10 @@ use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews, light_views};
 use crate::frame::scene_data::SceneData;
 use crate::frame::tonemap::tonemap;
+use crate::frame::traced_direct::traced;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::reference::traced_scene::TracedScene;
 use crate::scene::{Facts, Scene};
 
 /// What a declared frame offers; absent where a method, the scene or the request leaves it out.
@@ -38,18 +40,26 @@ impl Declared {
     }
 }
 
+/// A scene as it is on the device.
+pub(crate) struct Prepared<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) data: &'a SceneData,
+    pub(crate) lights: &'a LightSet,
+    /// Present if a wanted slot is filled by rays and something shines.
+    pub(crate) traced: Option<&'a TracedScene>,
+}
+
 /// Declares the frame.
 pub(crate) fn declare(
     graph: &mut Graph<'_>,
-    scene: &Scene,
-    data: &SceneData,
-    set: &LightSet,
+    prepared: &Prepared<'_>,
     settings: &Settings,
     request: &FrameRequest,
 ) -> Declared {
+    let Prepared { scene, data, lights: set, traced } = *prepared;
     let facts = scene.facts();
     let image_wanted = request.image || request.tonemap.is_some();
-    let wants = |slot: Slot| image_wanted || request.slots.contains(&slot);
+    let wants = |slot: Slot| request.wants(slot);
     let shows_emission = facts.emissive || scene.materials().iter().any(|material| material.unlit);
     let emission = wants(Slot::Emission) && (shows_emission || (facts.sky && request.slots.contains(&Slot::Emission)));
     let geometry = Geometry::import(graph, data);
@@ -63,7 +73,8 @@ pub(crate) fn declare(
 
     let mut declared =
         Declared { gbuffer, lights: None, reflective: None, rsm: None, direct: None, image: None, display: None };
-    declare_light(graph, &mut declared, &Frame { data, geometry: &geometry, set, settings, facts: &facts }, wants);
+    let frame = Frame { data, geometry: &geometry, set, traced, settings, facts: &facts };
+    declare_light(graph, &mut declared, &frame, wants);
 
     if image_wanted {
         let image = compose(graph, &declared.gbuffer, scene.sky(), |slot| declared.slot(slot));
@@ -77,12 +88,21 @@ struct Frame<'a> {
     data: &'a SceneData,
     geometry: &'a Geometry,
     set: &'a LightSet,
+    traced: Option<&'a TracedScene>,
     settings: &'a Settings,
     facts: &'a Facts,
 }
 
 fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'_>, wants: impl Fn(Slot) -> bool) {
     let settings = frame.settings;
+    if settings.methods.direct == DirectMethod::Traced && wants(Slot::Direct) {
+        match frame.traced {
+            Some(scene) => {
+                declared.direct = traced(graph, &declared.gbuffer, scene, frame.data.origin, &settings.traced);
+            }
+            None => graph.skip("direct", "no light"),
+        }
+    }
     let direct = settings.methods.direct == DirectMethod::ShadowMap && wants(Slot::Direct);
     let indirect = settings.methods.diffuse == DiffuseMethod::Rsm && wants(Slot::Diffuse);
     let reason = if frame.set.lights.is_empty() { Some("no light") } else { None };

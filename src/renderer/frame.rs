@@ -65,6 +65,11 @@ impl FrameRequest {
             read_back: true,
         }
     }
+
+    /// Whether the frame needs the slot, by itself or as a part of the image.
+    pub(crate) fn wants(&self, slot: Slot) -> bool {
+        self.image || self.tonemap.is_some() || self.slots.contains(&slot)
+    }
 }
 
 /// An RGB image in row-major order from the top left, linear Rec.709 radiance, W/(m² sr).

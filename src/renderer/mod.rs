@@ -33,7 +33,7 @@ pub use frame::{ColorImage, Estimate, Frame, FrameRequest, FrameTimings, PassTim
 pub use render::Renderer;
 pub use settings::{
     CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, PathSettings, Preset, RsmSettings, Settings,
-    SettingsError, ShadowSettings, SpecularMethod, Technique,
+    SettingsError, ShadowSettings, SpecularMethod, Technique, TracedSettings,
 };
 pub use slots::Slot;
 

@@ -10,7 +10,8 @@ use super::{
 };
 use crate::graph::hash_of;
 use crate::output::tonemap::tone_map;
-use crate::reference::tracer::{PathTracer, TraceCost, traced_key};
+use crate::reference::traced_scene::traced_key;
+use crate::reference::tracer::{PathTracer, TraceCost};
 use crate::reference::{Estimator, IMAGE, Noise, ReferenceRequest, SlotSums};
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
@@ -31,6 +32,10 @@ struct Traced {
 impl TracedPaths {
     pub(super) fn invalidate(&mut self) {
         self.held = None;
+    }
+
+    pub(super) fn release_scene(&mut self) {
+        self.tracer.release_scene();
     }
 }
 
@@ -102,12 +107,12 @@ impl Renderer {
         timings: &mut FrameTimings,
     ) -> Result<Traced, Error> {
         let start = Instant::now();
-        let device = self.device().clone();
+        let (device, traced_scene) = (self.device().clone(), self.traced_scene(scene)?);
         let paths = match &mut self.paths {
             Some(paths) => paths,
             None => self.paths.insert(TracedPaths { tracer: PathTracer::new(&device)?, held: None }),
         };
-        paths.tracer.prepare(scene)?;
+        paths.tracer.set_scene(traced_scene);
         timings.upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let settings = &self.settings.path;
         let asked = ReferenceRequest {

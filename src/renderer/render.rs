@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::declare::declare;
+use super::declare::{Prepared, declare};
 use super::path_frame::TracedPaths;
-use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
+use super::{ColorImage, Context, DirectMethod, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Graph, GraphDescription, Store};
+use crate::reference::traced_scene::{TracedScene, traced_key};
 use crate::scene::Scene;
 use crate::vulkan::{Device, VulkanError};
 
@@ -21,6 +22,8 @@ pub struct Renderer {
     pub(super) settings: Settings,
     data: Option<SceneData>,
     lights: LightSet,
+    /// Held while some method sends rays.
+    traced: Option<Arc<TracedScene>>,
     store: Store,
     pub(super) paths: Option<TracedPaths>,
 }
@@ -32,7 +35,7 @@ impl Renderer {
     /// If the device has no memory left.
     pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
         let store = Store::new(context.shared_device())?;
-        Ok(Renderer { settings, data: None, lights: LightSet::default(), store, paths: None })
+        Ok(Renderer { settings, data: None, lights: LightSet::default(), traced: None, store, paths: None })
     }
 
     /// The settings of the frames to come.
@@ -61,6 +64,9 @@ impl Renderer {
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_size(request)?;
+        if self.settings.methods.direct != DirectMethod::Traced && !self.settings.methods.traces_paths() {
+            self.release_traced_scene();
+        }
         if self.settings.methods.traces_paths() { self.render_paths(scene, request) } else { self.draw(scene, request) }
     }
 
@@ -71,11 +77,12 @@ impl Renderer {
     /// A frame whose methods are all passes of one graph.
     pub(super) fn draw(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         let start = Instant::now();
-        self.prepare(scene)?;
+        let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
+        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
         let mut graph = Graph::new(&mut self.store);
-        let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
+        let declared = declare(&mut graph, &prepared, &self.settings, request);
 
         let mut slots = Vec::new();
         for &slot in &request.slots {
@@ -115,7 +122,7 @@ impl Renderer {
             executed.take(read_back).chunks_exact(4).map(|word| [word[0], word[1], word[2]]).collect()
         });
         let mut memory_bytes = self.store.memory_by_piece();
-        memory_bytes.insert("scene".to_owned(), data.bytes());
+        memory_bytes.insert("scene".to_owned(), data.bytes() + traced.map_or(0, |traced| traced.bytes()));
         frame.timings = FrameTimings {
             timing: request.timing,
             gpu_ms: executed.gpu_ms,
@@ -134,10 +141,11 @@ impl Renderer {
     /// As [`Renderer::render`], as far as uploading the scene goes.
     pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
         self.check_size(request)?;
-        self.prepare(scene)?;
+        let traced = self.prepare(scene, request)?;
         let data = self.data.as_ref().expect("prepared above");
+        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
         let mut graph = Graph::new(&mut self.store);
-        let declared = declare(&mut graph, scene, data, &self.lights, &self.settings, request);
+        let declared = declare(&mut graph, &prepared, &self.settings, request);
         for image in
             Slot::ALL.into_iter().filter(|slot| request.slots.contains(slot)).filter_map(|slot| declared.slot(slot))
         {
@@ -165,14 +173,32 @@ impl Renderer {
         Ok(())
     }
 
-    /// Brings the scene and its lights up to date on the device.
-    fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+    /// Brings the scene and its lights up to date on the device. Returns what rays meet, if the frame's passes send any.
+    fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Option<Arc<TracedScene>>, Error> {
         let device = self.store.device().clone();
         let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
         self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
-        Ok(())
+        let traces = self.settings.methods.direct == DirectMethod::Traced && request.wants(Slot::Direct);
+        if traces && scene.facts().lit() { self.traced_scene(scene).map(Some) } else { Ok(None) }
+    }
+
+    /// The scene as rays meet it, built anew if geometry, materials or lights changed.
+    pub(super) fn traced_scene(&mut self, scene: &Scene) -> Result<Arc<TracedScene>, Error> {
+        if let Some(held) = self.traced.take().filter(|held| held.key == traced_key(scene)) {
+            return Ok(self.traced.insert(held).clone());
+        }
+        self.release_traced_scene();
+        let traced = TracedScene::new(self.store.device(), scene)?;
+        Ok(self.traced.insert(Arc::new(traced)).clone())
+    }
+
+    fn release_traced_scene(&mut self) {
+        self.traced = None;
+        if let Some(paths) = &mut self.paths {
+            paths.release_scene();
+        }
     }
 }
 

@@ -1,0 +1,54 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/lights.glsl"
+#include "direct/receiver.glsl"
+
+// What punctual lights add to the slot `direct` of one pixel, one ray a light:
+//
+//   L(x, v) = Σ_i f(l_i, v) · E⊥_i(x) · (n·l_i)⁺ · V_i(x)
+//
+// f: lib/brdf.glsl; E⊥: lib/lights.glsl; V: whether nothing is between x and the light. A light behind the shading normal or behind
+// the triangle itself gives nothing.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 8) uniform usamplerBuffer lights;
+
+layout(push_constant, scalar) uniform Push {
+    vec3 shift;
+    uint light_count;
+} push;
+
+vec3 reflected_radiance(Receiver receiver, Light light) {
+    Surface point = receiver.surface;
+    Illumination illumination = illuminate(light, point.position_rs);
+    float cosine = dot(point.normal, illumination.to_light);
+    if (min(cosine, dot(point.geometric_normal, illumination.to_light)) <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 brdf = SPECULAR_LOBES != 0u ? surface_brdf(point, illumination.to_light, receiver.to_eye) : point.diffuse_albedo * INVERSE_PI;
+    vec3 radiance = brdf * illumination.irradiance * cosine;
+    if (max3(radiance) <= 0.0) {
+        return vec3(0.0);
+    }
+    bool directional = light.kind == LIGHT_DIRECTIONAL;
+    vec3 way = directional ? illumination.to_light : light.position_rs - receiver.ray_origin;
+    return is_occluded(receiver.ray_origin, way, directional ? 3e38 : 1.0) ? vec3(0.0) : radiance;
+}
+
+void main() {
+    ivec2 pixel = pixel_of_invocation();
+    ivec2 size = imageSize(direct);
+    if (!is_inside(pixel, size)) {
+        return;
+    }
+    float pixel_depth = texelFetch(depth, pixel, 0).x;
+    vec3 radiance = vec3(0.0);
+    if (pixel_depth > 0.0) {
+        Receiver receiver = load_receiver(pixel, size, pixel_depth, push.shift);
+        [[dont_unroll]] for (uint i = 0u; i < push.light_count; ++i) {
+            radiance += reflected_radiance(receiver, load_light(lights, i));
+        }
+    }
+    store_direct(pixel, radiance);
+}

@@ -1,0 +1,88 @@
+// The surface at one pixel's centre, for kernels that send rays from it, and the slot `direct` as far as earlier kernels have filled it.
+// The scene that rays meet has an origin of its own: `shift` leads from the G-buffer's render space to that.
+#ifndef DIRECT_RECEIVER
+#define DIRECT_RECEIVER
+
+#include "lib/pixels.glsl"
+#include "lib/sobol.glsl"
+#include "lib/surface_packing.glsl"
+#include "path/lobes.glsl"
+
+// 1: `before` holds what earlier kernels found.
+layout(constant_id = 2) const uint ADDS = 0u;
+
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) uniform sampler2D depth;
+layout(set = 0, binding = 2) uniform usampler2D surface;
+layout(set = 0, binding = 3) uniform sampler2D specular;
+layout(set = 0, binding = 4) uniform sampler2D before;
+layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D direct;
+layout(set = 0, binding = 6) uniform usamplerBuffer bvh_nodes;
+layout(set = 0, binding = 7) uniform samplerBuffer bvh_triangles;
+
+#include "lib/ray_offset.glsl"
+#include "path/cutouts.glsl"
+#include "lib/bvh.glsl"
+
+struct Receiver {
+    Surface surface;  // position in the rays' space
+    vec3 to_eye;
+    vec3 ray_origin;
+};
+
+// A position from the depth buffer is off its surface by rounding of the depth, which is interpolated across the triangle: a few units in
+// the last place of the distance.
+const float DEPTH_SLACK = 1.0 / 131072.0;
+
+Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
+    vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
+    vec4 lobe = SPECULAR_LOBES != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+    Receiver receiver;
+    receiver.surface = unpack_surface(position_rs + shift, texelFetch(surface, pixel, 0), lobe);
+    receiver.to_eye = direction_to_eye(camera, position_rs);
+    float away = camera.depth_range > 0.0 ? camera.depth_range : distance(camera.position_rs, position_rs);
+    vec3 normal = receiver.surface.geometric_normal;
+    receiver.ray_origin = offset_ray_origin(receiver.surface.position_rs, normal) + normal * (DEPTH_SLACK * away);
+    return receiver;
+}
+
+// The weight of a sample that was drawn with `density`, where another one could have been drawn with `other`.
+float power_heuristic(float density, float other) {
+    float ratio = other / density;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+// The sequence of samples of a pixel: the same in every frame.
+uint seed_of_pixel(ivec2 pixel) {
+    return mix_bits(uint(pixel.y) << 16 | uint(pixel.x));
+}
+
+// How the receiver scatters, in the frame of its shading normal.
+struct Scattering {
+    Matter matter;
+    Frame frame;
+    vec3 viewer;
+    vec3 shares;
+};
+
+// The G-buffer knows no transmission.
+Scattering scattering_of(Receiver receiver) {
+    Surface point = receiver.surface;
+    Scattering scattering;
+    scattering.matter = Matter(
+        point.diffuse_albedo, point.f0, point.f90, max(point.roughness * point.roughness, MINIMUM_ALPHA), vec3(0.0), 1.0);
+    scattering.frame = frame_around(point.normal);
+    vec3 viewer = to_local(scattering.frame, receiver.to_eye);
+    scattering.viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
+    scattering.shares = lobe_shares(scattering.matter, scattering.viewer.z);
+    return scattering;
+}
+
+void store_direct(ivec2 pixel, vec3 radiance) {
+    if (ADDS != 0u) {
+        radiance += texelFetch(before, pixel, 0).rgb;
+    }
+    imageStore(direct, pixel, vec4(radiance, 1.0));
+}
+
+#endif

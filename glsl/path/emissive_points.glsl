@@ -1,0 +1,24 @@
+// The radiance of points of emissive triangles, before the cosine decides which side shows. The including shader declares
+// `corner_texcoords`, `material_textures`, `texture_table` and `texels`, as path/cutouts.glsl does.
+#ifndef PATH_EMISSIVE_POINTS
+#define PATH_EMISSIVE_POINTS
+
+#include "lib/texels.glsl"
+#include "lib/traced_scene.glsl"
+
+// 1: the radiance of some emissive triangles is textured.
+layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
+
+// `place`: the weights of corners 1 and 2.
+vec3 emissive_radiance(Triangle triangle, Material material, vec2 place) {
+    if (EMISSIVE_TEXTURES == 0u || (material.flags & MATERIAL_EMISSIVE_TEXTURE) == 0u) {
+        return material.emissive;
+    }
+    vec4 sets = interpolated(corner_texcoords, triangle, vec3(1.0 - place.x - place.y, place));
+    TextureUse use = load_texture_use(material_textures, triangle.material, USE_EMISSIVE);
+    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
+    vec2 texcoord = vec2(dot(use.u_row, uv), dot(use.v_row, uv));
+    return material.emissive * sample_texels(texels, texture_table, use.layer, texcoord, vec2(0.0), vec2(0.0)).rgb;
+}
+
+#endif

@@ -1,0 +1,180 @@
+//! The `direct` slot by rays from the G-buffer's surfaces to the lights: exact visibility in place of shadow maps (glsl/direct/).
+//!
+//! Punctual lights take one ray each and are without noise. Emissive surfaces are estimated from points drawn by power and from
+//! directions drawn by the BRDF, each weighted against the other: points alone are noisy where an emitter is near or a lobe narrow. The
+//! sky is estimated from the same directions. Each kind of light has a kernel of its own, which adds to what the one before it found: kernels stay
+//! small, and a scene runs only those that it has lights for.
+
+use ash::vk;
+use glam::DVec3;
+
+use super::gbuffer::GBuffer;
+use crate::graph::Graph;
+use crate::graph::bindings::{ImageRef, SampledImage};
+use crate::reference::traced_scene::{TracedBindings, TracedScene};
+use crate::renderer::TracedSettings;
+use crate::shaders::direct::{Directions, DirectionsPush, Emitters, EmittersPush, Punctual, PunctualPush};
+
+/// Declares the passes that the scene's lights need; returns the slot's radiance, or nothing if that is none. `origin`: of the
+/// G-buffer's render space.
+pub(crate) fn traced(
+    graph: &mut Graph<'_>,
+    buffer: &GBuffer,
+    scene: &TracedScene,
+    origin: DVec3,
+    settings: &TracedSettings,
+) -> Option<ImageRef> {
+    let emissive = scene.emissive_count > 0;
+    let sky = scene.sky.iter().any(|&channel| channel > 0.0);
+    let wanted = |reason: Option<&'static str>| reason.or((settings.samples == 0).then_some("no samples asked for"));
+    let shift = (origin - scene.origin).as_vec3().to_array();
+    let bindings = scene.import(graph);
+    let frame = TracedFrame { buffer, scene, bindings, shift, samples: settings.samples };
+    let mut direct = None;
+    match (scene.punctual_count == 0).then_some("no punctual light") {
+        Some(reason) => graph.skip("direct/punctual", reason),
+        None => direct = Some(frame.punctual(graph, direct)),
+    }
+    match wanted((!emissive).then_some("no emissive surface")) {
+        Some(reason) => graph.skip("direct/emitters", reason),
+        None => direct = Some(frame.emitters(graph, direct)),
+    }
+    match wanted((!sky && !emissive).then_some("no sky, no emissive surface")) {
+        Some(reason) => graph.skip("direct/directions", reason),
+        None => direct = Some(frame.directions(graph, direct)),
+    }
+    direct
+}
+
+/// What the passes share.
+struct TracedFrame<'a> {
+    buffer: &'a GBuffer,
+    scene: &'a TracedScene,
+    bindings: TracedBindings,
+    shift: [f32; 3],
+    samples: u32,
+}
+
+impl TracedFrame<'_> {
+    fn image(&self, graph: &mut Graph<'_>, name: &str) -> ImageRef {
+        graph.image(name, vk::Format::R32G32B32A32_SFLOAT, self.buffer.size)
+    }
+
+    /// What was found before, or an image that stands for nothing, and whether it is real.
+    fn before(&self, found: Option<ImageRef>) -> (SampledImage, u32) {
+        (found.unwrap_or(self.buffer.depth).sampled(), u32::from(found.is_some()))
+    }
+
+    fn punctual(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
+        let direct = self.image(graph, "direct.punctual");
+        let (specular, has_specular) = self.buffer.specular();
+        let (before, adds) = self.before(found);
+        let (scene, light_count) = (&self.bindings, self.scene.punctual_count);
+        let pass = Punctual {
+            camera: self.buffer.camera.clone(),
+            depth: self.buffer.depth.sampled(),
+            surface: self.buffer.surface.sampled(),
+            specular: specular.sampled(),
+            before,
+            direct: direct.write(),
+            bvh_nodes: scene.bvh_nodes.clone(),
+            bvh_triangles: scene.bvh_triangles.clone(),
+            lights: scene.lights.clone(),
+            triangles: scene.triangles.clone(),
+            corner_colors: scene.corner_colors.clone(),
+            corner_texcoords: scene.corner_texcoords.clone(),
+            materials: scene.materials.clone(),
+            material_textures: scene.material_textures.clone(),
+            texture_table: scene.texture_table.clone(),
+            texels: scene.texels.clone(),
+            specular_lobes: has_specular,
+            transmissive: 0,
+            adds,
+            alpha_masks: u32::from(self.scene.facts.alpha_masked),
+            vertex_colors: u32::from(self.scene.facts.vertex_colors),
+            push: PunctualPush { shift: self.shift, light_count },
+        };
+        graph.pass("direct/punctual", pass).note("lights", u64::from(light_count)).pixels(self.buffer.size);
+        direct
+    }
+
+    fn emitters(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
+        let direct = self.image(graph, "direct.emitters");
+        let (specular, has_specular) = self.buffer.specular();
+        let (before, adds) = self.before(found);
+        let (scene, emitter_count) = (&self.bindings, self.scene.emissive_count);
+        let pass = Emitters {
+            camera: self.buffer.camera.clone(),
+            depth: self.buffer.depth.sampled(),
+            surface: self.buffer.surface.sampled(),
+            specular: specular.sampled(),
+            before,
+            direct: direct.write(),
+            bvh_nodes: scene.bvh_nodes.clone(),
+            bvh_triangles: scene.bvh_triangles.clone(),
+            emitters: scene.emissive.clone(),
+            sobol: scene.sobol.clone(),
+            triangles: scene.triangles.clone(),
+            corner_colors: scene.corner_colors.clone(),
+            corner_texcoords: scene.corner_texcoords.clone(),
+            materials: scene.materials.clone(),
+            material_textures: scene.material_textures.clone(),
+            texture_table: scene.texture_table.clone(),
+            texels: scene.texels.clone(),
+            specular_lobes: has_specular,
+            transmissive: 0,
+            adds,
+            emissive_textures: u32::from(self.scene.emissive_textures),
+            alpha_masks: u32::from(self.scene.facts.alpha_masked),
+            vertex_colors: u32::from(self.scene.facts.vertex_colors),
+            push: EmittersPush {
+                shift: self.shift,
+                emitter_count,
+                sample_count: self.samples,
+                density_scale: self.scene.emissive_density_scale,
+            },
+        };
+        graph.pass("direct/emitters", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
+        direct
+    }
+
+    fn directions(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
+        let direct = self.image(graph, "direct.directions");
+        let (specular, has_specular) = self.buffer.specular();
+        let (before, adds) = self.before(found);
+        let scene = &self.bindings;
+        let pass = Directions {
+            camera: self.buffer.camera.clone(),
+            depth: self.buffer.depth.sampled(),
+            surface: self.buffer.surface.sampled(),
+            specular: specular.sampled(),
+            before,
+            direct: direct.write(),
+            bvh_nodes: scene.bvh_nodes.clone(),
+            bvh_triangles: scene.bvh_triangles.clone(),
+            sobol: scene.sobol.clone(),
+            triangles: scene.triangles.clone(),
+            corner_colors: scene.corner_colors.clone(),
+            corner_texcoords: scene.corner_texcoords.clone(),
+            materials: scene.materials.clone(),
+            material_textures: scene.material_textures.clone(),
+            texture_table: scene.texture_table.clone(),
+            texels: scene.texels.clone(),
+            specular_lobes: has_specular,
+            transmissive: 0,
+            adds,
+            emissive_textures: u32::from(self.scene.emissive_textures),
+            finds_emitters: u32::from(self.scene.emissive_count > 0),
+            alpha_masks: u32::from(self.scene.facts.alpha_masked),
+            vertex_colors: u32::from(self.scene.facts.vertex_colors),
+            push: DirectionsPush {
+                shift: self.shift,
+                sample_count: self.samples,
+                sky: self.scene.sky,
+                density_scale: self.scene.emissive_density_scale,
+            },
+        };
+        graph.pass("direct/directions", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
+        direct
+    }
+}
