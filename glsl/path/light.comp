@@ -17,6 +17,8 @@ layout(local_size_x = 64) in;
 
 // 1: lights send out paths of their own.
 layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
+// Beyond 0, photons carry the light of all emitters but lights with a range to vertices behind the first diffuse one (state.glsl).
+layout(constant_id = 4) const uint PHOTONS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
@@ -104,6 +106,11 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
     vec4 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_LIGHT + 2u * push.depth));
     Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
+    if (PHOTONS != PHOTONS_NONE && (texelFetch(path_flags, int(path)).x & FLAG_ALL_SPECULAR) == 0u) {
+        if (emitter.is_triangle || load_light(lights, emitter.number).range <= 0.0) {
+            return false;
+        }
+    }
     LightSample light = light_from(emitter, vertex.position_rs, random.yz);
     float side = dot(vertex.geometric_normal, light.to_light);
     Frame frame = frame_around(vertex.normal);

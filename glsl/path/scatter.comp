@@ -37,6 +37,7 @@ uint flags_after(uint flags, uint lobe) {
     bool diffuse = lobe == LOBE_DIFFUSE;
     uint slot = flags & FLAG_SLOT_MASK;
     uint kept = flags & (FLAG_FIRST_DIFFUSE | FLAG_ALL_SPECULAR);
+    kept |= (flags & FLAG_ALL_SPECULAR) == 0u ? FLAG_BEYOND_DIFFUSE : 0u;
     if (push.depth == 0u) {
         slot = SLOT_SPECULAR;
         kept |= diffuse ? FLAG_FIRST_DIFFUSE : 0u;

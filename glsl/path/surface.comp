@@ -23,6 +23,8 @@ layout(constant_id = 5) const uint LIGHT_PATHS = 1u;
 // 1: some mesh has vertex colors; some surface has a normal map and the tangents to use it.
 layout(constant_id = 6) const uint VERTEX_COLORS = 1u;
 layout(constant_id = 7) const uint NORMAL_MAPS = 1u;
+// What a camera's path leaves to photons behind its first diffuse vertex (state.glsl).
+layout(constant_id = 8) const uint PHOTONS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer active_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
@@ -182,7 +184,7 @@ bool meet_surface(uint path) {
         vec4 medium = texelFetch(media, int(triangle.material));
         transmittance = exp(-medium.xyz * (medium.w * hit.x));
     }
-    if (FROM_LIGHT == 0u) {
+    if (FROM_LIGHT == 0u && (PHOTONS == PHOTONS_NONE || (flags & FLAG_BEYOND_DIFFUSE) == 0u)) {
         bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
         vec3 emitted = emitted_radiance(material, point, front);
         if (max3(emitted) > 0.0 && (!unlit || (flags & FLAG_ALL_SPECULAR) != 0u)) {
@@ -204,7 +206,8 @@ bool meet_surface(uint path) {
     vec3 transmission = point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
     bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
     bool dark = max3(lobes.diffuse_albedo) <= 0.0 && (SPECULAR_LOBES == 0u || unlit || max(max3(lobes.f0), max(lobes.f90, max3(transmission))) <= 0.0);
-    if (push.ends != 0u || dark) {
+    bool gathered = PHOTONS == PHOTONS_ALL && FROM_LIGHT == 0u && (flags & FLAG_ALL_SPECULAR) == 0u;
+    if (push.ends != 0u || dark || gathered) {
         return false;
     }
 

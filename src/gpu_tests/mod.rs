@@ -33,5 +33,6 @@ mod robustness;
 mod scenes;
 mod session;
 mod skipping;
+mod sppm;
 mod tonemap;
 mod traced_direct;

@@ -224,6 +224,16 @@ impl<'s> Graph<'s> {
         self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
     }
 
+    /// Says that a buffer which this frame leaves for a later one will be used in other ways by that one's passes, as
+    /// [`Graph::keep_for_read_back`] does for copies.
+    pub(crate) fn keep_for_passes<T>(&mut self, buffer: BufferRef<T>) {
+        self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
+            | vk::BufferUsageFlags::INDIRECT_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST;
+    }
+
     /// Asks that the image be made and its first mip level copied to the host; `image.mip(n)` copies level n. Returns its
     /// number among the read-backs.
     pub(crate) fn read_back(&mut self, image: ImageRef) -> ReadBack {

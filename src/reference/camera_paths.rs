@@ -107,7 +107,7 @@ pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene,
 }
 
 /// Next-event estimation.
-fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
+pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
     let variants = paths.variants;
     let light = shaders::Light {
         alive_paths: paths.alive.texels(WORD),
@@ -133,6 +133,7 @@ fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &
         transmissive: variants.transmissive,
         light_paths: variants.light_paths,
         emissive_textures: u32::from(scene.emissive_textures),
+        photons: variants.photons,
         push: shaders::LightPush {
             emitter_count: scene.emitter_count,
             depth,

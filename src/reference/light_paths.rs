@@ -89,7 +89,7 @@ pub(super) fn add_splats(sums: &mut SlotSums, bytes: &[u8], scene: &TracedScene)
 }
 
 /// Units of a splat in 1 W/(m² sr): what all lights send out, spread over the scene's sphere, is 2³⁶ of them.
-fn scale_of(scene: &TracedScene) -> f32 {
+pub(super) fn scale_of(scene: &TracedScene) -> f32 {
     let area = std::f64::consts::PI * scene.radius * scene.radius;
     let radiance = (scene.power / (std::f64::consts::PI * area)).clamp(1e-25, 1e25);
     2.0_f64.powi(FRACTION_BITS - radiance.log2().floor() as i32) as f32

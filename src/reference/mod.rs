@@ -22,9 +22,11 @@ mod light_paths;
 mod noise;
 mod obtain;
 mod paths;
+mod photon_map;
 mod result;
 mod shard;
 mod sobol;
+pub(crate) mod sppm;
 #[cfg(test)]
 mod tests;
 mod texels;
@@ -123,6 +125,6 @@ fn source<'a>(
     let request = ReferenceRequest { seed: request.seed ^ SEEDS_OF_REFERENCES, ..request.clone() };
     match request.estimator {
         Estimator::Path => Ok(Box::new(tracer::PathSource::new(context, scene, &request)?)),
-        Estimator::Sppm => Err(Error::Estimator(estimator_name(Estimator::Sppm))),
+        Estimator::Sppm => Ok(Box::new(sppm::SppmSource::new(context, scene, &request)?)),
     }
 }

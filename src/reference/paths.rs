@@ -45,6 +45,8 @@ pub(super) struct Variants {
     pub(super) specular: u32,
     pub(super) transmissive: u32,
     pub(super) light_paths: u32,
+    /// A camera's path leaves light to photons (PHOTONS_ of glsl/path/state.glsl).
+    pub(super) photons: u32,
 }
 
 impl Variants {
@@ -53,6 +55,7 @@ impl Variants {
             specular: u32::from(scene.facts.specular),
             transmissive: u32::from(scene.facts.transmissive),
             light_paths: u32::from(scene.needs_light_paths(view.bounces)),
+            photons: 0,
         }
     }
 }
@@ -193,6 +196,7 @@ impl Paths {
             light_paths: variants.light_paths,
             vertex_colors: u32::from(scene.facts.vertex_colors),
             normal_maps: u32::from(scene.facts.normal_mapped),
+            photons: variants.photons,
             push: shaders::SurfacePush {
                 sky: scene.sky,
                 depth,

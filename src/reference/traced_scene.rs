@@ -78,6 +78,10 @@ pub(crate) struct TracedScene {
     /// Some triangle is there at some of its points only.
     pub(super) cutouts: bool,
     pub(crate) emitter_count: u32,
+    /// Some light ends at a range, so that paths from it are none.
+    pub(super) ranged_lights: bool,
+    /// Of all triangles, m².
+    pub(super) area: f64,
     pub(crate) punctual_count: u32,
     pub(crate) emissive_count: u32,
     /// From a triangle's density among all lights to that among emissive triangles.
@@ -185,6 +189,8 @@ impl TracedScene {
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
             cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
+            ranged_lights: lights.iter().any(|light| light.range.is_some()),
+            area: triangles.iter().map(TracedTriangle::area).sum(),
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },

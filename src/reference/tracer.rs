@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::camera_paths::{self, Sums, Wave};
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::paths::Paths;
@@ -55,6 +57,17 @@ pub(crate) struct View {
 }
 
 impl View {
+    /// The picture that a request asks for of a scene with this origin of render space.
+    pub(super) fn new(request: &ReferenceRequest, origin: DVec3) -> View {
+        View {
+            size: request.size,
+            camera: camera(&request.camera, request.size, origin),
+            bounces: request.bounces,
+            filter: request.filter,
+            seed: request.seed,
+        }
+    }
+
     /// Pixels, and light paths a sample.
     pub(super) fn pixel_count(&self) -> f32 {
         self.size[0] as f32 * self.size[1] as f32
@@ -87,13 +100,7 @@ impl PathTracer {
     /// The picture that a request asks for of the scene.
     pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
-        View {
-            size: request.size,
-            camera: camera(&request.camera, request.size, origin),
-            bounces: request.bounces,
-            filter: request.filter,
-            seed: request.seed,
-        }
+        View::new(request, origin)
     }
 
     /// How the passes to come are timed.
@@ -276,12 +283,12 @@ fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
     (depth + DEPTHS_PER_SUBMISSION).min(all)
 }
 
-fn seed_of_half(seed: u32, half: u32) -> u32 {
+pub(super) fn seed_of_half(seed: u32, half: u32) -> u32 {
     seed.wrapping_mul(2).wrapping_add(half)
 }
 
 /// A seed for each sample of a half, different from those of the pixels' sequences.
-fn seed_of_sample(seed: u32, sample: u32) -> u32 {
+pub(super) fn seed_of_sample(seed: u32, sample: u32) -> u32 {
     let mixed = (u64::from(seed) << 32 | u64::from(sample)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     ((mixed ^ mixed >> 29) >> 32) as u32 ^ sample.rotate_left(16)
 }
@@ -320,7 +327,12 @@ impl TraceCost {
 }
 
 /// Puts the sums of a run of blocks where their pixels are (glsl/path/pixels.glsl).
-fn scatter_sums(sums: &mut SlotSums, texels: &[[f32; 4]], size: [u32; 2], [first_block, block_count]: [u32; 2]) {
+pub(super) fn scatter_sums(
+    sums: &mut SlotSums,
+    texels: &[[f32; 4]],
+    size: [u32; 2],
+    [first_block, block_count]: [u32; 2],
+) {
     let [width, height] = size;
     let blocks_per_row = width.div_ceil(8);
     let paths = 64 * block_count;

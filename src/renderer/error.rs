@@ -12,7 +12,4 @@ pub enum Error {
     /// The frame has no pixels.
     #[error("a frame of {0}x{1} pixels cannot be made; ask for at least 1x1")]
     EmptyFrame(u32, u32),
-    /// References cannot be made in this way.
-    #[error("references cannot be made by {0:?} in this version; ask for the estimator \"path\"")]
-    Estimator(&'static str),
 }

@@ -1,0 +1,190 @@
+//! The photon map of one pass, pass by pass (glsl/sppm/): measure and store while paths are walked, then scan, sort, gather.
+//!
+//! Photons are sorted into buckets of a grid by counting; within a bucket their order is any, and sums in fixed point make that
+//! no matter.
+
+use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS};
+use super::traced_scene::TracedScene;
+use super::tracer::View;
+use crate::graph::bindings::BufferRef;
+use crate::graph::{Graph, ReadBack};
+use crate::shaders::sppm as shaders;
+
+/// Texels of a photon and of a measurement point (glsl/sppm/photon.glsl).
+const TEXELS: usize = 3;
+/// Words before the numbers in a queue (glsl/path/queue.glsl).
+const QUEUE_HEADER: usize = 4;
+
+/// What is gathered with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disc {
+    /// m
+    pub(super) radius: f32,
+    /// Units of a sum in 1 W/(m² sr).
+    pub(super) scale: f32,
+}
+
+impl Disc {
+    fn inverse_cell(&self) -> f32 {
+        0.5 / self.radius
+    }
+}
+
+/// Measurement points, photons, and the grid over these.
+pub(super) struct PhotonMap {
+    points: BufferRef<[u32; 4]>,
+    point_queue: BufferRef<u32>,
+    photons: BufferRef<[u32; 4]>,
+    photon_queue: BufferRef<u32>,
+    bucket_counts: BufferRef<u32>,
+    bucket_starts: BufferRef<u32>,
+    photon_order: BufferRef<u32>,
+    bits: u32,
+}
+
+impl PhotonMap {
+    /// Buffers for a measurement point a path, and `photon_capacity` photons.
+    pub(super) fn declare(graph: &mut Graph<'_>, paths: &Paths, photon_capacity: u32) -> PhotonMap {
+        let photons = photon_capacity as usize;
+        let bits = (photon_capacity.max(2).ilog2() / 3).clamp(3, 6);
+        let buckets = 1_usize << (3 * bits);
+        let map = PhotonMap {
+            points: graph.buffer("sppm.points", TEXELS * paths.capacity as usize),
+            point_queue: graph.buffer("sppm.point_queue", QUEUE_HEADER + paths.capacity as usize),
+            photons: graph.buffer("sppm.photons", TEXELS * photons),
+            photon_queue: graph.buffer("sppm.photon_queue", QUEUE_HEADER),
+            bucket_counts: graph.buffer("sppm.bucket_counts", buckets),
+            bucket_starts: graph.buffer("sppm.bucket_starts", buckets + 1),
+            photon_order: graph.buffer("sppm.photon_order", photons),
+            bits,
+        };
+        graph.keep_for_passes(map.points);
+        graph.keep_for_passes(map.photons);
+        for words in [map.point_queue, map.photon_queue, map.bucket_counts] {
+            graph.keep_for_passes(words);
+        }
+        map
+    }
+
+    /// Starts without points and photons.
+    pub(super) fn clear(&self, graph: &mut Graph<'_>) {
+        graph.fill_buffer("sppm/clear-counts", self.bucket_counts, 0);
+        self.clear_queue(graph, "sppm/clear-points", self.point_queue);
+        self.clear_queue(graph, "sppm/clear-photons", self.photon_queue);
+    }
+
+    fn clear_queue(&self, graph: &mut Graph<'_>, name: &str, queue: BufferRef<u32>) {
+        graph.pass(name, shaders::Clear { queue: queue.read_write() }).groups([1, 1, 1]);
+    }
+
+    /// Leaves the measurement points among the camera's vertices number `depth`.
+    pub(super) fn measure(&self, graph: &mut Graph<'_>, paths: &Paths, depth: u32) {
+        let measure = shaders::Measure {
+            alive_paths: paths.alive.texels(WORD),
+            path_rays: paths.rays.texels(FLOATS),
+            path_states: paths.states.texels(FLOATS),
+            path_flags: paths.flags.texels(WORD),
+            path_seeds: paths.seeds.texels(PAIR),
+            vertices: paths.vertices.texels(WORDS),
+            sobol: paths.sobol.clone(),
+            points: self.points.read_write(),
+            point_queue: self.point_queue.read_write(),
+            specular_lobes: paths.variants.specular,
+            transmissive: paths.variants.transmissive,
+            push: shaders::MeasurePush { depth, reserved: 0 },
+        };
+        graph.pass("sppm/measure", measure).threads_indirect(paths.alive, 0);
+    }
+
+    /// Finds how much of each measurement point's disc is surface.
+    pub(super) fn probe(&self, graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, disc: Disc) {
+        let probe = shaders::Probe {
+            point_queue: self.point_queue.texels(WORD),
+            path_seeds: paths.seeds.texels(PAIR),
+            sobol: paths.sobol.clone(),
+            bvh_nodes: paths.scene.bvh_nodes.clone(),
+            bvh_triangles: paths.scene.bvh_triangles.clone(),
+            points: self.points.read_write(),
+            triangles: paths.scene.triangles.clone(),
+            corner_colors: paths.scene.corner_colors.clone(),
+            corner_texcoords: paths.scene.corner_texcoords.clone(),
+            materials: paths.scene.materials.clone(),
+            material_textures: paths.scene.material_textures.clone(),
+            texture_table: paths.scene.texture_table.clone(),
+            texels: paths.scene.texels.clone(),
+            alpha_masks: u32::from(scene.cutouts),
+            vertex_colors: u32::from(scene.facts.vertex_colors),
+            push: shaders::ProbePush { radius: disc.radius, reserved: 0 },
+        };
+        graph.pass("sppm/probe", probe).threads_indirect(self.point_queue, 0);
+    }
+
+    /// Leaves photons at the vertices number `depth` of light paths.
+    pub(super) fn store(&self, graph: &mut Graph<'_>, paths: &Paths, disc: Disc, depth: u32) {
+        let store = shaders::Store {
+            alive_paths: paths.alive.texels(WORD),
+            path_rays: paths.rays.texels(FLOATS),
+            path_states: paths.states.texels(FLOATS),
+            path_flags: paths.flags.texels(WORD),
+            vertices: paths.vertices.texels(WORDS),
+            photons: self.photons.read_write(),
+            photon_queue: self.photon_queue.read_write(),
+            bucket_counts: self.bucket_counts.read_write(),
+            specular_lobes: paths.variants.specular,
+            transmissive: paths.variants.transmissive,
+            push: shaders::StorePush { depth, bits: self.bits, inverse_cell: disc.inverse_cell(), reserved: 0 },
+        };
+        graph.pass("sppm/store", store).threads_indirect(paths.alive, 0);
+    }
+
+    /// Adds the photons to what the measurement points' paths found, and takes them away.
+    pub(super) fn gather(&self, graph: &mut Graph<'_>, paths: &Paths, view: &View, disc: Disc) {
+        let scan = shaders::Scan {
+            bucket_counts: self.bucket_counts.texels(WORD),
+            bucket_starts: self.bucket_starts.write(),
+            push: shaders::ScanPush { bucket_count: 1 << (3 * self.bits), reserved: 0 },
+        };
+        graph.pass("sppm/scan", scan).groups([1, 1, 1]);
+        let sort = shaders::Sort {
+            photon_queue: self.photon_queue.texels(WORD),
+            photons: self.photons.texels(WORDS),
+            bucket_starts: self.bucket_starts.texels(WORD),
+            bucket_counts: self.bucket_counts.read_write(),
+            photon_order: self.photon_order.write(),
+        };
+        graph.pass("sppm/sort", sort).threads_indirect(self.photon_queue, 0);
+        let area = std::f64::consts::PI * f64::from(disc.radius).powi(2);
+        let gather = shaders::Gather {
+            point_queue: self.point_queue.texels(WORD),
+            points: self.points.texels(WORDS),
+            photons: self.photons.texels(WORDS),
+            bucket_starts: self.bucket_starts.texels(WORD),
+            photon_order: self.photon_order.texels(WORD),
+            path_radiance: paths.radiance.read_write(),
+            specular_lobes: paths.variants.specular,
+            transmissive: paths.variants.transmissive,
+            push: shaders::GatherPush {
+                radius: disc.radius,
+                inverse_cell: disc.inverse_cell(),
+                density: (1.0 / (area * f64::from(view.pixel_count()))) as f32,
+                scale: disc.scale,
+                bits: self.bits,
+                bounces: view.bounces.unwrap_or(u32::MAX),
+                path_count: paths.capacity,
+                reserved: 0,
+            },
+        };
+        graph.pass("sppm/gather", gather).threads_indirect(self.point_queue, 0);
+        self.clear_queue(graph, "sppm/clear-photons", self.photon_queue);
+        graph.want_buffer(paths.radiance);
+    }
+
+    /// Asks for all that the next submission goes on from, and for the queue of photons, whose last word is their number.
+    pub(super) fn want(&self, graph: &mut Graph<'_>) -> ReadBack {
+        graph.want_buffer(self.points);
+        graph.want_buffer(self.point_queue);
+        graph.want_buffer(self.photons);
+        graph.want_buffer(self.bucket_counts);
+        graph.read_back_buffer(self.photon_queue)
+    }
+}
