@@ -131,10 +131,10 @@ impl SppmSource {
         let all = self.view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(2));
         let mut depth = 0;
         loop {
-            let (mut graph, scene, view, paths, map, sums) = self.declare(&pass.wave);
+            let (mut graph, scene, view, paths, map, _) = self.declare(&pass.wave);
             if depth == 0 {
                 if pass.first {
-                    sums.clear(&mut graph, &paths);
+                    graph.fill_buffer("path/clear-radiance", paths.radiance, 0);
                 }
                 map.clear(&mut graph);
                 camera_paths::generate(&mut graph, &paths, view, &pass.wave);
@@ -213,6 +213,9 @@ impl SppmSource {
     /// Adds the pass to the sums; after the `last` one these are returned as [`Sums::read_back`] leaves them.
     fn add_pass(&mut self, pass: &Pass, last: bool) -> Result<Option<Vec<[f32; 4]>>, VulkanError> {
         let (mut graph, _, _, paths, _, sums) = self.declare(&pass.wave);
+        if pass.first {
+            sums.clear(&mut graph);
+        }
         sums.add(&mut graph, &paths, &pass.wave);
         graph.want_buffer(paths.radiance);
         let read_back = last.then(|| sums.read_back(&mut graph));
