@@ -1,11 +1,11 @@
 // Owen-scrambled Sobol' points: Burley 2020, "Practical Hash-based Owen Scrambling" (JCGT 9(4)), with the hash of Vegdahl 2021.
 //
-// The host uploads the first 65536 points of the four-dimensional sequence, bits reversed. Higher dimensions are further sets of four,
-// each in an order and with a scrambling of its own (padding). Samples beyond 65536 start over with another seed.
+// The host uploads the first 4096 points of the four-dimensional sequence, bits reversed. Higher dimensions are further sets of four,
+// each in an order and with a scrambling of its own (padding). Samples beyond 4096 start over with another seed.
 #ifndef LIB_SOBOL
 #define LIB_SOBOL
 
-const uint SOBOL_POINTS = 65536u;
+const uint SOBOL_POINTS = 4096u;
 
 // A good 32-bit mix (Wellons's lowbias32).
 uint mix_bits(uint x) {

@@ -1,9 +1,9 @@
 //! The Sobol' points that glsl/lib/sobol.glsl scrambles.
 
 /// Points in the table.
-const POINTS: u32 = 1 << 16;
+const POINTS: u32 = 1 << 12;
 
-/// The first 65536 points of the first four dimensions, the bits of each coordinate reversed: the generator matrices of the primitive
+/// The first 4096 points of the first four dimensions, the bits of each coordinate reversed: the generator matrices of the primitive
 /// polynomials 1, x + 1, x² + x + 1 and x³ + x + 1 with the initial numbers of Joe & Kuo 2008.
 pub(super) fn sobol_points() -> Vec<[u32; 4]> {
     let directions = [
@@ -14,7 +14,7 @@ pub(super) fn sobol_points() -> Vec<[u32; 4]> {
     ];
     let point = |index: u32| {
         directions.map(|directions: [u32; 32]| {
-            let bits = (0..16).filter(|bit| index >> bit & 1 == 1).fold(0, |bits, bit| bits ^ directions[bit]);
+            let bits = (0..12).filter(|bit| index >> bit & 1 == 1).fold(0, |bits, bit| bits ^ directions[bit]);
             bits.reverse_bits()
         })
     };
