@@ -4,6 +4,7 @@
 //! [`super::camera_paths`]; each leaves a queue of the paths that go on, and the next one is dispatched for so many. Nothing two paths do
 //! touches the same memory, so the same samples give the same bits on one device.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -14,7 +15,7 @@ use super::paths::Paths;
 use super::traced_scene::TracedScene;
 use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::frame::camera::camera;
-use crate::graph::{Executed, Graph, ReadBack, Store};
+use crate::graph::{Executed, Graph, GraphDescription, ReadBack, Store};
 use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
@@ -24,6 +25,9 @@ use crate::vulkan::{Device, VulkanError};
 const WAVE_PATHS: u32 = 1 << 18;
 /// Vertices that one submission advances a wave by.
 const DEPTHS_PER_SUBMISSION: u32 = 12;
+
+/// Why lights send out no paths ([`TracedScene::needs_light_paths`]).
+const NO_LIGHT_PATHS: &str = "no glossy surface, or no light but the sky's, or direct light alone";
 
 /// What a run of samples cost.
 #[derive(Clone, Debug, Default)]
@@ -44,6 +48,8 @@ pub(crate) struct PathTracer {
     scene: Option<Arc<TracedScene>>,
     timing: Timing,
     cost: TraceCost,
+    /// The most that each piece held between submissions, bytes.
+    held: BTreeMap<String, u64>,
 }
 
 /// The picture that is traced.
@@ -76,7 +82,13 @@ impl View {
 
 impl PathTracer {
     pub(crate) fn new(device: &Arc<Device>) -> Result<PathTracer, VulkanError> {
-        Ok(PathTracer { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+        Ok(PathTracer {
+            store: Store::new(device)?,
+            scene: None,
+            timing: Timing::Frame,
+            cost: TraceCost::default(),
+            held: BTreeMap::new(),
+        })
     }
 
     /// Traces paths through this scene from now on.
@@ -117,16 +129,52 @@ impl PathTracer {
     pub(crate) fn unchanged_passes(&self) -> Vec<PassTiming> {
         vec![PassTiming {
             piece: "path".to_owned(),
-            pass: String::new(),
+            pass: "generate".to_owned(),
             ms: None,
             skipped: Some("unchanged: geometry, materials, lights, camera".to_owned()),
-            work: std::collections::BTreeMap::new(),
+            work: BTreeMap::new(),
         }]
     }
 
-    /// Device memory, bytes, by piece; `scene` is the scene itself.
-    pub(crate) fn memory_bytes(&self) -> std::collections::BTreeMap<String, u64> {
-        let mut bytes = self.store.memory_by_piece();
+    /// The passes that take a path to its first vertices and on to the camera or a light; those of later vertices are the same.
+    pub(crate) fn describe(&mut self, view: &View) -> Result<GraphDescription, VulkanError> {
+        let scene = self.scene.clone().expect("set before it is described");
+        let limit = self.store.device().limits().max_storage_buffer_range;
+        let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
+        let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
+        let mut graph = Graph::new(&mut self.store);
+        let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
+        let sums = Sums::declare(&mut graph, &wave);
+        camera_paths::generate(&mut graph, &paths, view, &wave);
+        for depth in 0..last_depth(view, 0, 1).min(2) {
+            camera_paths::advance(&mut graph, &paths, &scene, view, depth);
+        }
+        sums.add(&mut graph, &paths, &wave);
+        if scene.needs_light_paths(view.bounces) {
+            let splats = Splats::declare(&mut graph, &scene, view, limit)?;
+            let swarm = Swarm { first_path: 0, path_count: paths.capacity, seed: view.seed };
+            light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
+            for depth in 0..2 {
+                light_paths::advance(&mut graph, &paths, &splats, &scene, view, depth);
+            }
+            splats.want(&mut graph);
+        } else {
+            graph.skip("particle/emit", NO_LIGHT_PATHS);
+        }
+        paths.want(&mut graph);
+        Ok(graph.describe())
+    }
+
+    fn note_memory(&mut self) {
+        for (piece, bytes) in self.store.memory_by_piece() {
+            let held = self.held.entry(piece).or_insert(0);
+            *held = bytes.max(*held);
+        }
+    }
+
+    /// The most device memory that was held at a time, bytes, by piece; `scene` is the scene itself.
+    pub(crate) fn memory_bytes(&self) -> BTreeMap<String, u64> {
+        let mut bytes = self.held.clone();
         bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, |scene| scene.bytes()));
         bytes
     }
@@ -144,9 +192,11 @@ impl PathTracer {
             let texels = self.trace_from_camera(view, [first_block, block_count], half, [first, count])?;
             scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
         }
-        let scene = self.scene.as_ref().expect("set before it is traced");
+        let scene = self.scene.clone().expect("set before it is traced");
         if scene.needs_light_paths(view.bounces) {
             self.trace_from_lights(view, half, [first, count], &mut sums)?;
+        } else {
+            self.cost.skip("particle", "emit", NO_LIGHT_PATHS);
         }
         Ok(sums)
     }
@@ -159,7 +209,7 @@ impl PathTracer {
         half: u32,
         [first, count]: [u32; 2],
     ) -> Result<Vec<[f32; 4]>, VulkanError> {
-        let scene = self.scene.as_ref().expect("set before it is traced");
+        let scene = self.scene.clone().expect("set before it is traced");
         let capacity = capacity(view, count);
         let samples_per_wave = (capacity / (64 * block_count)).min(count);
         let mut texels = Vec::new();
@@ -174,7 +224,7 @@ impl PathTracer {
             let mut depth = 0;
             loop {
                 let mut graph = Graph::new(&mut self.store);
-                let paths = Paths::declare(&mut graph, scene, view, capacity);
+                let paths = Paths::declare(&mut graph, &scene, view, capacity);
                 // What is added to later: memory that a submission does not name is returned.
                 let _sums = Sums::declare(&mut graph, &wave);
                 if depth == 0 {
@@ -185,17 +235,19 @@ impl PathTracer {
                 }
                 let until = last_depth(view, depth, 1);
                 for depth in depth..until {
-                    camera_paths::advance(&mut graph, &paths, scene, view, depth);
+                    camera_paths::advance(&mut graph, &paths, &scene, view, depth);
                 }
                 depth = until;
                 graph.want_buffer(paths.radiance);
                 let totals = paths.want(&mut graph);
-                if self.cost.add_step(graph.run(self.timing)?, totals) == 0 {
+                let executed = graph.run(self.timing)?;
+                self.note_memory();
+                if self.cost.add_step(executed, totals) == 0 {
                     break;
                 }
             }
             let mut graph = Graph::new(&mut self.store);
-            let paths = Paths::declare(&mut graph, scene, view, capacity);
+            let paths = Paths::declare(&mut graph, &scene, view, capacity);
             let sums = Sums::declare(&mut graph, &wave);
             if done == 0 {
                 sums.clear(&mut graph);
@@ -221,7 +273,7 @@ impl PathTracer {
         [first, count]: [u32; 2],
         sums: &mut SlotSums,
     ) -> Result<(), VulkanError> {
-        let scene = self.scene.as_ref().expect("set before it is traced");
+        let scene = self.scene.clone().expect("set before it is traced");
         let limit = self.store.device().limits().max_storage_buffer_range;
         let all = view.size[0] * view.size[1];
         let capacity = capacity(view, count);
@@ -235,32 +287,34 @@ impl PathTracer {
                 let mut depth = 0;
                 loop {
                     let mut graph = Graph::new(&mut self.store);
-                    let paths = Paths::declare(&mut graph, scene, view, capacity);
-                    let splats = Splats::declare(&mut graph, scene, view, limit)?;
+                    let paths = Paths::declare(&mut graph, &scene, view, capacity);
+                    let splats = Splats::declare(&mut graph, &scene, view, limit)?;
                     if depth == 0 {
                         if sample == first && first_path == 0 {
                             splats.clear(&mut graph);
                         }
-                        light_paths::emit(&mut graph, &paths, scene, view, &swarm);
+                        light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
                     }
                     let until = last_depth(view, depth, 0);
                     for depth in depth..until {
-                        light_paths::advance(&mut graph, &paths, &splats, scene, view, depth);
+                        light_paths::advance(&mut graph, &paths, &splats, &scene, view, depth);
                     }
                     depth = until;
                     splats.want(&mut graph);
                     let totals = paths.want(&mut graph);
-                    if self.cost.add_step(graph.run(self.timing)?, totals) == 0 {
+                    let executed = graph.run(self.timing)?;
+                    self.note_memory();
+                    if self.cost.add_step(executed, totals) == 0 {
                         break;
                     }
                 }
             }
         }
         let mut graph = Graph::new(&mut self.store);
-        let splats = Splats::declare(&mut graph, scene, view, limit)?;
+        let splats = Splats::declare(&mut graph, &scene, view, limit)?;
         let read_back = splats.read_back(&mut graph);
         let mut executed = graph.run(self.timing)?;
-        add_splats(sums, &executed.take(read_back), scene);
+        add_splats(sums, &executed.take(read_back), &scene);
         self.cost.add(executed);
         Ok(())
     }
@@ -294,6 +348,14 @@ pub(super) fn seed_of_sample(seed: u32, sample: u32) -> u32 {
 }
 
 impl TraceCost {
+    /// Notes a piece that the scene does not need.
+    fn skip(&mut self, piece: &str, pass: &str, reason: &str) {
+        if self.passes.iter().all(|row| row.piece != piece) {
+            let (piece, pass, skipped) = (piece.to_owned(), pass.to_owned(), Some(reason.to_owned()));
+            self.passes.push(PassTiming { piece, pass, ms: None, skipped, work: BTreeMap::new() });
+        }
+    }
+
     /// Adds a submission that advanced a wave. Returns how many of its paths go on.
     fn add_step(&mut self, mut executed: Executed, totals: ReadBack) -> u32 {
         let totals: Vec<u32> = bytemuck::pod_collect_to_vec(&executed.take(totals));

@@ -8,7 +8,7 @@ use super::{
     CausticsMethod, ColorImage, DiffuseMethod, DirectMethod, Error, Estimate, Frame, FrameRequest, FrameTimings,
     Methods, Renderer, Settings, Slot, SpecularMethod,
 };
-use crate::graph::hash_of;
+use crate::graph::{GraphDescription, hash_of};
 use crate::output::tonemap::tone_map;
 use crate::reference::traced_scene::traced_key;
 use crate::reference::tracer::{PathTracer, TraceCost};
@@ -99,6 +99,37 @@ impl Renderer {
         Ok(frame)
     }
 
+    /// The passes that trace paths. Those of other methods are described without them.
+    pub(super) fn describe_paths(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
+        let asked = self.asked_of_paths(request);
+        let tracer = &mut self.paths_of(scene)?.tracer;
+        let view = tracer.view(&asked);
+        Ok(tracer.describe(&view)?)
+    }
+
+    fn asked_of_paths(&self, request: &FrameRequest) -> ReferenceRequest {
+        let settings = &self.settings.path;
+        ReferenceRequest {
+            size: request.size,
+            camera: request.camera.clone(),
+            estimator: Estimator::Path,
+            bounces: settings.bounces,
+            filter: settings.filter,
+            seed: settings.seed,
+        }
+    }
+
+    /// The tracer, with the scene as it is now.
+    fn paths_of(&mut self, scene: &Scene) -> Result<&mut TracedPaths, Error> {
+        let (device, traced_scene) = (self.device().clone(), self.traced_scene(scene)?);
+        if self.paths.is_none() {
+            self.paths = Some(TracedPaths { tracer: PathTracer::new(&device)?, held: None });
+        }
+        let paths = self.paths.as_mut().expect("made above");
+        paths.tracer.set_scene(traced_scene);
+        Ok(paths)
+    }
+
     fn trace(
         &mut self,
         scene: &Scene,
@@ -107,23 +138,10 @@ impl Renderer {
         timings: &mut FrameTimings,
     ) -> Result<Traced, Error> {
         let start = Instant::now();
-        let (device, traced_scene) = (self.device().clone(), self.traced_scene(scene)?);
-        let paths = match &mut self.paths {
-            Some(paths) => paths,
-            None => self.paths.insert(TracedPaths { tracer: PathTracer::new(&device)?, held: None }),
-        };
-        paths.tracer.set_scene(traced_scene);
+        let (asked, spp) = (self.asked_of_paths(request), self.settings.path.spp);
+        let paths = self.paths_of(scene)?;
         timings.upload_ms = start.elapsed().as_secs_f64() * 1e3;
-        let settings = &self.settings.path;
-        let asked = ReferenceRequest {
-            size: request.size,
-            camera: request.camera.clone(),
-            estimator: Estimator::Path,
-            bounces: settings.bounces,
-            filter: settings.filter,
-            seed: settings.seed,
-        };
-        let view = format!("{:?}", (&asked, settings.spp));
+        let view = format!("{:?}", (&asked, spp));
         let key = hash_of(&(traced_key(scene), scene.sky().map(f32::to_bits), view, traced));
         let made = match &paths.held {
             Some((held, made)) if *held == key => {
@@ -132,7 +150,7 @@ impl Renderer {
             }
             _ => {
                 paths.tracer.set_timing(request.timing);
-                let mut made = mean_of_samples(&mut paths.tracer, &asked, settings.spp, traced)?;
+                let mut made = mean_of_samples(&mut paths.tracer, &asked, spp, traced)?;
                 let TraceCost { gpu_ms, pipeline_ms, passes, rays } = paths.tracer.take_cost();
                 (timings.gpu_ms, timings.pipeline_ms, timings.passes) = (gpu_ms, pipeline_ms, passes);
                 (made.estimate.rays, made.estimate.seconds) = (rays, 1e-3 * gpu_ms);

@@ -141,6 +141,9 @@ impl Renderer {
     /// As [`Renderer::render`], as far as uploading the scene goes.
     pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
         self.check_size(request)?;
+        if self.settings.methods.traces_paths() {
+            return self.describe_paths(scene, request);
+        }
         let traced = self.prepare(scene, request)?;
         let data = self.data.as_ref().expect("prepared above");
         let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
