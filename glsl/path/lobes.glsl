@@ -48,9 +48,11 @@ vec3 lobe_shares(Matter matter, float cosine) {
         return vec3(1.0, 0.0, 0.0);
     }
     float reflected = max3(fresnel(matter, cosine));
-    // The diffuse lobe sees F(v·h), which at grazing views is below F(n·v).
+    // The lobes see F(v·h), which at grazing views is below F(n·v); beyond the critical angle of the surface as a whole some of its
+    // microfacets still transmit, the more the rougher it is.
     vec3 shares = vec3(
-        max3(matter.diffuse_albedo) * (1.0 - 0.5 * reflected), reflected, max3(matter.transmission) * (1.0 - reflected));
+        max3(matter.diffuse_albedo) * (1.0 - 0.5 * reflected), reflected,
+        max3(matter.transmission) * max(1.0 - reflected, 0.5 * matter.alpha));
     return shares / max(shares.x + shares.y + shares.z, 1e-20);
 }
 

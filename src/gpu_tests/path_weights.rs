@@ -10,6 +10,9 @@ use super::session::Session;
 use crate::renderer::Slot;
 use crate::scene::{LightKind, Material, Scene};
 
+/// Of each half, with light paths and without.
+const SAMPLES: [u32; 2] = [64, 256];
+
 #[derive(Clone, Copy, Debug)]
 enum Lamp {
     Point,
@@ -62,12 +65,12 @@ fn scene(material: Material, thing: Thing, lamp: Lamp) -> Scene {
     scene
 }
 
-/// The slots' means with and without light paths, from as many samples each as are asked for.
-fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp: Lamp, samples: [u32; 2]) {
+/// The slots have the same means with and without light paths.
+fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp: Lamp) {
     let scene = scene(material.clone(), thing, lamp);
     let camera = view(DVec3::new(-0.4, 2.0, 3.2), DVec3::new(0.0, 0.7, -0.6));
     let [with, without] = [true, false].map(|light_paths| {
-        let samples = samples[usize::from(!light_paths)];
+        let samples = SAMPLES[usize::from(!light_paths)];
         let ask =
             Ask { light_paths: Some(light_paths), bounces: Some(4), ..Ask::new([80, 80], samples, camera.clone()) };
         tracer.trace(&scene, &ask)
@@ -85,7 +88,7 @@ fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp
             100.0 * (a.x / b.x - 1.0),
             (a.x - b.x) / noise
         );
-        if off > (5.0 * noise).max(0.002 * b.max_element()) || !off.is_finite() {
+        if off > (4.0 * noise).max(0.002 * b.max_element()) || !off.is_finite() {
             failures.push(slot);
         }
     }
@@ -98,10 +101,10 @@ fn rough_metal_sends_the_same_light_either_way() {
     let mut tracer = Tracer::new(&session);
     let metal = |roughness| Material { metallic: 1.0, roughness, ..lambert([0.9, 0.7, 0.5]) };
     for lamp in [Lamp::Point, Lamp::Spot, Lamp::Sun, Lamp::Panel, Lamp::Sheet] {
-        assert_agreement(&mut tracer, &metal(0.45), Thing::FlatBox, lamp, [6, 24]);
+        assert_agreement(&mut tracer, &metal(0.45), Thing::FlatBox, lamp);
     }
-    assert_agreement(&mut tracer, &metal(0.6), Thing::SmoothSphere, Lamp::Point, [6, 24]);
-    assert_agreement(&mut tracer, &metal(0.4), Thing::SmoothSphere, Lamp::Panel, [6, 24]);
+    assert_agreement(&mut tracer, &metal(0.6), Thing::SmoothSphere, Lamp::Point);
+    assert_agreement(&mut tracer, &metal(0.4), Thing::SmoothSphere, Lamp::Panel);
 }
 
 #[test]
@@ -110,7 +113,7 @@ fn glossy_plastic_sends_the_same_light_either_way() {
     let mut tracer = Tracer::new(&session);
     let plastic = Material { roughness: 0.45, base_color: [0.3, 0.6, 0.8, 1.0], ior: 2.0, ..Material::default() };
     for (thing, lamp) in [(Thing::FlatBox, Lamp::Spot), (Thing::SmoothSphere, Lamp::Panel)] {
-        assert_agreement(&mut tracer, &plastic, thing, lamp, [6, 24]);
+        assert_agreement(&mut tracer, &plastic, thing, lamp);
     }
 }
 
@@ -130,7 +133,7 @@ fn rough_glass_sends_the_same_light_either_way() {
     for thickness in [0.0, 1.0] {
         for (thing, lamp) in [(Thing::FlatBox, Lamp::Point), (Thing::SmoothSphere, Lamp::Panel)] {
             println!("thickness {thickness}");
-            assert_agreement(&mut tracer, &glass(thickness), thing, lamp, [6, 24]);
+            assert_agreement(&mut tracer, &glass(thickness), thing, lamp);
         }
     }
 }
