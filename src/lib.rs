@@ -7,6 +7,7 @@ pub mod reference;
 pub mod renderer;
 pub mod scene;
 
+mod caustics;
 mod diffuse;
 mod frame;
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Which pieces a frame consists of: the settings' methods, as far as the scene and the request need them.
 
-use super::{DiffuseMethod, DirectMethod, FrameRequest, Settings, Slot};
+use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, Settings, Slot};
+use crate::caustics::photons::{PhotonInputs, photons};
 use crate::diffuse::rsm::{Rsm, rsm};
+use crate::diffuse::vpl::{VplInputs, vpl};
 use crate::frame::camera::camera;
 use crate::frame::compose::compose;
 use crate::frame::direct::shadow_map;
@@ -23,6 +25,8 @@ pub(crate) struct Declared {
     pub(crate) lights: Option<LightViews>,
     pub(crate) reflective: Option<ReflectiveViews>,
     pub(crate) rsm: Option<Rsm>,
+    pub(crate) vpl: Option<ImageRef>,
+    pub(crate) caustics: Option<ImageRef>,
     direct: Option<ImageRef>,
     pub(crate) image: Option<ImageRef>,
     pub(crate) display: Option<BufferRef<u32>>,
@@ -34,8 +38,9 @@ impl Declared {
         match slot {
             Slot::Emission => self.gbuffer.emission,
             Slot::Direct => self.direct,
-            Slot::Diffuse => self.rsm.as_ref().map(|rsm| rsm.diffuse),
-            Slot::Caustics | Slot::Specular => None,
+            Slot::Diffuse => self.vpl.or(self.rsm.as_ref().map(|rsm| rsm.diffuse)),
+            Slot::Caustics => self.caustics,
+            Slot::Specular => None,
         }
     }
 }
@@ -71,8 +76,17 @@ pub(crate) fn declare(
     };
     let gbuffer = gbuffer(graph, data, &geometry, &facts, &view);
 
-    let mut declared =
-        Declared { gbuffer, lights: None, reflective: None, rsm: None, direct: None, image: None, display: None };
+    let mut declared = Declared {
+        gbuffer,
+        lights: None,
+        reflective: None,
+        rsm: None,
+        vpl: None,
+        caustics: None,
+        direct: None,
+        image: None,
+        display: None,
+    };
     let frame = Frame { data, geometry: &geometry, set, traced, settings, facts: &facts };
     declare_light(graph, &mut declared, &frame, wants);
 
@@ -103,36 +117,117 @@ fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'
             None => graph.skip("direct", "no light"),
         }
     }
-    let direct = settings.methods.direct == DirectMethod::ShadowMap && wants(Slot::Direct);
-    let indirect = settings.methods.diffuse == DiffuseMethod::Rsm && wants(Slot::Diffuse);
-    let reason = if frame.set.lights.is_empty() { Some("no light") } else { None };
-    if let Some(reason) = reason {
-        for (used, piece) in
-            [(direct || indirect, "light-views"), (direct, "direct/shadow-map"), (indirect, "diffuse/rsm")]
-        {
-            if used {
-                graph.skip(piece, reason);
-            }
-        }
-        return;
+    let wants_direct = settings.methods.direct == DirectMethod::ShadowMap && wants(Slot::Direct);
+    let diffuse = DiffusePiece::of(settings, frame.facts).filter(|_| wants(Slot::Diffuse));
+    let caustics = CausticsPiece::of(settings, frame.facts).filter(|_| wants(Slot::Caustics));
+    let unlit = frame.set.lights.is_empty().then_some("no light");
+    let direct_reason = unlit;
+    let diffuse_reason = diffuse.as_ref().and_then(|piece| unlit.or(piece.skipped));
+    let caustics_reason = caustics.as_ref().and_then(|piece| unlit.or(piece.skipped));
+    let gathers = diffuse.is_some() && diffuse_reason.is_none();
+    let splats = caustics.is_some() && caustics_reason.is_none();
+    if let (Some(reason), true) = (unlit, wants_direct || diffuse.is_some() || caustics.is_some()) {
+        graph.skip("light-views", reason);
     }
-    let rsm_reason = match (frame.facts.diffuse, settings.rsm.vpls) {
-        (false, _) => Some("no diffuse surface"),
-        (_, 0) => Some("no VPLs asked for"),
-        _ => None,
-    };
-    let gathers = indirect && rsm_reason.is_none();
-    if direct || gathers {
+    if let (Some(reason), true) = (direct_reason, wants_direct) {
+        graph.skip("direct/shadow-map", reason);
+    }
+    if unlit.is_none() && (wants_direct || gathers || splats) {
         let (lights, reflective) = light_views(graph, frame.data, frame.geometry, frame.set, gathers);
-        if direct {
+        if wants_direct {
             declared.direct = Some(shadow_map(graph, &declared.gbuffer, &lights, &settings.shadow));
         }
         if let Some(reflective) = reflective {
-            declared.rsm = Some(rsm(graph, &declared.gbuffer, frame.set, &lights, reflective, &settings.rsm));
+            declare_diffuse(graph, declared, frame, &lights, reflective);
+        }
+        if splats {
+            let inputs = PhotonInputs {
+                buffer: &declared.gbuffer,
+                data: frame.data,
+                geometry: frame.geometry,
+                facts: frame.facts,
+                set: frame.set,
+                lights: &lights,
+                traced: frame.traced,
+                settings: &settings.photons,
+            };
+            declared.caustics = photons(graph, &inputs);
         }
         (declared.lights, declared.reflective) = (Some(lights), reflective);
     }
-    if let (true, Some(reason)) = (indirect, rsm_reason) {
-        graph.skip("diffuse/rsm", reason);
+    for (piece, reason) in
+        [(diffuse.map(|piece| piece.name), diffuse_reason), (caustics.map(|piece| piece.name), caustics_reason)]
+    {
+        if let (Some(piece), Some(reason)) = (piece, reason) {
+            graph.skip(piece, reason);
+        }
+    }
+}
+
+/// A method that VPLs are drawn for, and why the scene or the settings leave it nothing to do.
+struct DiffusePiece {
+    name: &'static str,
+    skipped: Option<&'static str>,
+}
+
+impl DiffusePiece {
+    fn of(settings: &Settings, facts: &Facts) -> Option<DiffusePiece> {
+        let (name, count) = match settings.methods.diffuse {
+            DiffuseMethod::Rsm => ("diffuse/rsm", settings.rsm.vpls),
+            DiffuseMethod::Vpl => ("diffuse/vpl", if settings.vpl.bounces == 0 { 0 } else { settings.vpl.count }),
+            DiffuseMethod::None | DiffuseMethod::Path => return None,
+        };
+        let skipped = match (facts.diffuse, count) {
+            (false, _) => Some("no diffuse surface"),
+            (_, 0) => Some("no VPLs asked for"),
+            _ => None,
+        };
+        Some(DiffusePiece { name, skipped })
+    }
+}
+
+/// Likewise for photons.
+struct CausticsPiece {
+    name: &'static str,
+    skipped: Option<&'static str>,
+}
+
+impl CausticsPiece {
+    fn of(settings: &Settings, facts: &Facts) -> Option<CausticsPiece> {
+        if settings.methods.caustics != CausticsMethod::Photons {
+            return None;
+        }
+        let skipped = match (facts.specular, facts.diffuse, settings.photons.max.min(settings.photons.bounces)) {
+            (false, ..) => Some("no specular or transmissive surface"),
+            (_, false, _) => Some("no diffuse surface"),
+            (.., 0) => Some("no photons asked for"),
+            _ => None,
+        };
+        Some(CausticsPiece { name: "caustics/photons", skipped })
+    }
+}
+
+fn declare_diffuse(
+    graph: &mut Graph<'_>,
+    declared: &mut Declared,
+    frame: &Frame<'_>,
+    lights: &LightViews,
+    reflective: ReflectiveViews,
+) {
+    let settings = frame.settings;
+    if settings.methods.diffuse == DiffuseMethod::Vpl {
+        let inputs = VplInputs {
+            buffer: &declared.gbuffer,
+            data: frame.data,
+            geometry: frame.geometry,
+            set: frame.set,
+            lights,
+            reflective,
+            traced: frame.traced,
+            settings: &settings.vpl,
+        };
+        declared.vpl = vpl(graph, &inputs);
+    } else {
+        declared.rsm = Some(rsm(graph, &declared.gbuffer, frame.set, lights, reflective, &settings.rsm));
     }
 }

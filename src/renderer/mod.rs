@@ -22,6 +22,7 @@ mod context;
 pub(crate) mod declare;
 mod error;
 mod frame;
+mod options;
 mod path_frame;
 mod render;
 mod settings;
@@ -30,10 +31,13 @@ mod slots;
 pub use context::Context;
 pub use error::Error;
 pub use frame::{ColorImage, Estimate, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
+pub use options::{
+    LightSettings, ListProjection, PathSettings, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting,
+    PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading, VplVisibility,
+};
 pub use render::Renderer;
 pub use settings::{
-    CausticsMethod, DiffuseMethod, DirectMethod, LightSettings, Methods, PathSettings, Preset, RsmSettings, Settings,
-    SettingsError, ShadowSettings, SpecularMethod, Technique, TracedSettings,
+    CausticsMethod, DiffuseMethod, DirectMethod, Methods, Preset, Settings, SettingsError, SpecularMethod, Technique,
 };
 pub use slots::Slot;
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::declare::{Prepared, declare};
 use super::path_frame::TracedPaths;
-use super::{ColorImage, Context, DirectMethod, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
+use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Graph, GraphDescription, Store};
@@ -64,7 +64,7 @@ impl Renderer {
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_size(request)?;
-        if self.settings.methods.direct != DirectMethod::Traced && !self.settings.methods.traces_paths() {
+        if !self.settings.traces_rays() {
             self.release_traced_scene();
         }
         if self.settings.methods.traces_paths() { self.render_paths(scene, request) } else { self.draw(scene, request) }
@@ -183,7 +183,8 @@ impl Renderer {
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
         self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
-        let traces = self.settings.methods.direct == DirectMethod::Traced && request.wants(Slot::Direct);
+        let settings = &self.settings;
+        let traces = Slot::ALL.into_iter().any(|slot| request.wants(slot) && settings.sends_rays(slot));
         if traces && scene.facts().lit() { self.traced_scene(scene).map(Some) } else { Ok(None) }
     }
 

@@ -3,6 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::options::{
+    LightSettings, ListProjection, PathSettings, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting,
+    PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading, VplVisibility, choices,
+};
 use super::slots::Slot;
 use crate::reference::PixelFilter;
 
@@ -53,19 +57,22 @@ pub enum Technique {
     Direct,
     /// Reflective shadow maps (Dachsbacher & Stamminger 2005): VPLs gathered at every pixel, without visibility.
     Rsm,
+    /// VPLs gathered at regions of several sizes, and caustic photons through per-pixel lists (Quyen 2014).
+    Hybrid,
     /// Path tracing and light tracing: the reference, at as many samples as time allows.
     Path,
 }
 
 impl Technique {
     /// All techniques.
-    pub const ALL: [Technique; 3] = [Technique::Direct, Technique::Rsm, Technique::Path];
+    pub const ALL: [Technique; 4] = [Technique::Direct, Technique::Rsm, Technique::Hybrid, Technique::Path];
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Technique::Direct => "direct",
             Technique::Rsm => "rsm",
+            Technique::Hybrid => "hybrid",
             Technique::Path => "path",
         }
     }
@@ -92,6 +99,7 @@ impl Technique {
         match self {
             Technique::Direct => none,
             Technique::Rsm => Methods { diffuse: DiffuseMethod::Rsm, ..none },
+            Technique::Hybrid => Methods { diffuse: DiffuseMethod::Vpl, caustics: CausticsMethod::Photons, ..none },
             Technique::Path => Methods {
                 direct: DirectMethod::Traced,
                 diffuse: DiffuseMethod::Path,
@@ -138,29 +146,7 @@ impl Preset {
     }
 }
 
-macro_rules! methods {
-    ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $text:literal),* $(,)? }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        pub enum $name { $($(#[$variant_doc])* #[serde(rename = $text)] $variant),* }
-
-        impl $name {
-            /// The names of all methods of the slot.
-            pub const NAMES: &[&str] = &[$($text),*];
-
-            /// The name used on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $($name::$variant => $text),* }
-            }
-
-            fn from_name(name: &str) -> Option<Self> {
-                match name { $($text => Some($name::$variant),)* _ => None }
-            }
-        }
-    };
-}
-
-methods! {
+choices! {
     /// How the `direct` slot is filled.
     DirectMethod {
         /// Not at all.
@@ -171,27 +157,31 @@ methods! {
         Traced = "traced",
     }
 }
-methods! {
+choices! {
     /// How the `diffuse` slot is filled.
     DiffuseMethod {
         /// Not at all.
         None = "none",
         /// Reflective shadow maps: VPLs gathered at every pixel.
         Rsm = "rsm",
+        /// Virtual point lights, gathered at regions of several sizes.
+        Vpl = "vpl",
         /// Path tracing.
         Path = "path",
     }
 }
-methods! {
+choices! {
     /// How the `caustics` slot is filled.
     CausticsMethod {
         /// Not at all.
         None = "none",
+        /// Photons from the specular surfaces that lights see, splatted.
+        Photons = "photons",
         /// Path tracing and light tracing.
         Path = "path",
     }
 }
-methods! {
+choices! {
     /// How the `specular` slot is filled.
     SpecularMethod {
         /// Not at all.
@@ -261,61 +251,6 @@ impl Methods {
     }
 }
 
-/// What stands for the scene's lights, and the resolution of their views.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LightSettings {
-    /// Side of a spot, directional or point-face light view, in texels; 16 to 4096.
-    pub resolution: u32,
-    /// Cosine emitters that stand for all emissive surfaces together; 0 to 256.
-    pub emitter_samples: u32,
-    /// Side of an emitter sample's hemicube top, in texels; 16 to 1024.
-    pub emitter_resolution: u32,
-    /// Directional lights that stand for a `--sky`; 1 to 256.
-    pub sky_samples: u32,
-}
-
-/// Shadow-map filtering of the `shadow-map` direct method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ShadowSettings {
-    /// Half width of the percentage-closer filter, in texels of the light view; 0 (one bilinear tap) to 4.
-    pub filter_radius: u32,
-    /// Offset of the receiver along its normal, in texel widths at the receiver; 0 to 16.
-    pub normal_offset: f64,
-}
-
-/// Options of the `traced` direct method, where no paths are traced.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TracedSettings {
-    /// Points of emissive surfaces, and as many directions of the sky, that each pixel sends a ray to; 0 (neither gives light) to
-    /// 1024. Cost: linear. Noise: at most its inverse square root. Punctual lights take one ray each whatever this says.
-    pub samples: u32,
-}
-
-/// Options of the `rsm` diffuse method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RsmSettings {
-    /// VPLs gathered at every pixel, shared among the lights by reflected flux; 0 to 65536. Cost: linear.
-    pub vpls: u32,
-}
-
-/// Options of the methods that trace paths.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PathSettings {
-    /// Samples a pixel of one frame; 1 to 1048576. Cost: linear. Noise: its inverse square root.
-    pub spp: u32,
-    /// Scatterings between the light and the first visible surface at most; 0: direct light alone; null: no limit.
-    pub bounces: Option<u32>,
-    /// Where in a pixel light is sampled: `center` or `box`.
-    pub filter: PixelFilter,
-    /// Which of the equally good sequences of samples is taken.
-    pub seed: u32,
-}
-
 /// Everything that decides how a frame is made, apart from the scene, the view and the size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -334,6 +269,10 @@ pub struct Settings {
     pub traced: TracedSettings,
     /// Options of the `rsm` method.
     pub rsm: RsmSettings,
+    /// Options of the `vpl` method.
+    pub vpl: VplSettings,
+    /// Options of the `photons` method.
+    pub photons: PhotonSettings,
     /// Options of the `path` methods.
     pub path: PathSettings,
 }
@@ -350,6 +289,30 @@ impl Settings {
             shadow: ShadowSettings { filter_radius: 1, normal_offset: 0.05 },
             traced: TracedSettings { samples: 4 },
             rsm: RsmSettings { vpls: 256 },
+            vpl: VplSettings {
+                count: 256,
+                bounces: 1,
+                visibility: VplVisibility::None,
+                shading: VplShading::Auto,
+                levels: 7,
+                depth_threshold: 0.01,
+                normal_threshold: 0.1,
+                ism_resolution: 32,
+                ism_points: 2048,
+            },
+            photons: PhotonSettings {
+                max: 38_000,
+                bounces: 2,
+                trace: PhotonTracing::Bvh,
+                geometry: PhotonGeometry::Lists,
+                projection: ListProjection::Scene,
+                views: 3,
+                resolution: 128,
+                splat: PhotonSplatting::Auto,
+                downscale: 1,
+                kernel: PhotonKernel::Gaussian,
+                radius: 1.0,
+            },
             path: PathSettings { spp: 64, bounces: None, filter: PixelFilter::Center, seed: 0 },
         };
         let lights = default.lights.clone();
@@ -359,6 +322,8 @@ impl Settings {
                 lights: LightSettings { resolution: 256, emitter_samples: 4, emitter_resolution: 64, sky_samples: 8 },
                 traced: TracedSettings { samples: 1 },
                 rsm: RsmSettings { vpls: 64 },
+                vpl: VplSettings { count: 64, ..default.vpl },
+                photons: PhotonSettings { max: 9_500, downscale: 2, radius: 2.0, ..default.photons },
                 path: PathSettings { spp: 16, ..default.path },
                 ..default
             },
@@ -372,13 +337,25 @@ impl Settings {
                 shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
                 traced: TracedSettings { samples: 16 },
                 rsm: RsmSettings { vpls: 1024 },
+                vpl: VplSettings { count: 512, bounces: 4, visibility: VplVisibility::Traced, ..default.vpl },
+                photons: PhotonSettings { max: 200_000, bounces: 4, radius: 0.5, ..default.photons },
                 path: PathSettings { spp: 256, ..default.path },
                 ..default
             },
-            // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel.
+            // Dachsbacher & Stamminger 2005, section 5: maps of 512², 400 samples a pixel. Quyen 2014, chapter 4: maps of 512², 256 VPLs,
+            // lists and rays of 128² from the camera, irradiance at a quarter of the resolution.
             Preset::Paper => Settings {
                 lights: LightSettings { resolution: 512, ..lights },
                 rsm: RsmSettings { vpls: 400 },
+                vpl: VplSettings { count: 256, ..default.vpl },
+                photons: PhotonSettings {
+                    max: 38_146,
+                    trace: PhotonTracing::Lines,
+                    projection: ListProjection::Camera,
+                    splat: PhotonSplatting::Discs,
+                    downscale: 4,
+                    ..default.photons
+                },
                 ..default
             },
         }
@@ -391,10 +368,12 @@ impl Settings {
         let diffuse = match diffuse {
             DiffuseMethod::None => Some(0),
             DiffuseMethod::Rsm => Some(1),
+            DiffuseMethod::Vpl => Some(self.vpl.bounces),
             DiffuseMethod::Path => self.path.bounces,
         };
         let caustics = match caustics {
             CausticsMethod::None => Some(0),
+            CausticsMethod::Photons => Some(self.photons.bounces),
             CausticsMethod::Path => self.path.bounces,
         };
         let specular = match specular {
@@ -402,6 +381,23 @@ impl Settings {
             SpecularMethod::Path => self.path.bounces,
         };
         [diffuse, caustics, specular].into_iter().try_fold(0, |most, bounces| Some(bounces?.max(most)))
+    }
+
+    /// Whether the passes that fill `slot` send rays through the scene's hierarchy.
+    pub(crate) fn sends_rays(&self, slot: Slot) -> bool {
+        let Methods { direct, diffuse, caustics, specular: _ } = self.methods;
+        let vpl_rays = self.vpl.visibility == VplVisibility::Traced || self.vpl.bounces > 1;
+        match slot {
+            Slot::Emission | Slot::Specular => false,
+            Slot::Direct => direct == DirectMethod::Traced,
+            Slot::Diffuse => diffuse == DiffuseMethod::Vpl && self.vpl.count > 0 && vpl_rays,
+            Slot::Caustics => caustics == CausticsMethod::Photons && self.photons.trace == PhotonTracing::Bvh,
+        }
+    }
+
+    /// Whether anything sends rays or traces paths.
+    pub(crate) fn traces_rays(&self) -> bool {
+        self.methods.traces_paths() || Slot::ALL.into_iter().any(|slot| self.sends_rays(slot))
     }
 
     /// Where in a pixel the methods sample light: at its centre, unless paths are traced otherwise.
@@ -456,17 +452,31 @@ impl Settings {
         let within = |value: u32, low: u32, high: u32| {
             if (low..=high).contains(&value) { Ok(()) } else { Err(format!("it takes {low} to {high}")) }
         };
+        let between = |value: f64, low: f64, high: f64| {
+            if (low..=high).contains(&value) { Ok(()) } else { Err(format!("it takes {low} to {high}")) }
+        };
         match key {
             "lights.resolution" => within(self.lights.resolution, 16, 4096),
             "lights.emitter_samples" => within(self.lights.emitter_samples, 0, 256),
             "lights.emitter_resolution" => within(self.lights.emitter_resolution, 16, 1024),
             "lights.sky_samples" => within(self.lights.sky_samples, 1, 256),
             "shadow.filter_radius" => within(self.shadow.filter_radius, 0, 4),
-            "shadow.normal_offset" if !(0.0..=16.0).contains(&self.shadow.normal_offset) => {
-                Err("it takes 0 to 16".to_owned())
-            }
+            "shadow.normal_offset" => between(self.shadow.normal_offset, 0.0, 16.0),
             "traced.samples" => within(self.traced.samples, 0, 1024),
             "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            "vpl.count" => within(self.vpl.count, 0, 65536),
+            "vpl.bounces" => within(self.vpl.bounces, 0, 16),
+            "vpl.levels" => within(self.vpl.levels, 1, 7),
+            "vpl.depth_threshold" => between(self.vpl.depth_threshold, 0.0, 1.0),
+            "vpl.normal_threshold" => between(self.vpl.normal_threshold, 0.0, 2.0),
+            "vpl.ism_resolution" => within(self.vpl.ism_resolution, 8, 128),
+            "vpl.ism_points" => within(self.vpl.ism_points, 16, 65536),
+            "photons.max" => within(self.photons.max, 0, 1 << 22),
+            "photons.bounces" => within(self.photons.bounces, 0, 16),
+            "photons.views" => within(self.photons.views, 1, 3),
+            "photons.resolution" => within(self.photons.resolution, 16, 1024),
+            "photons.downscale" if ![1, 2, 4].contains(&self.photons.downscale) => Err("it takes 1, 2 or 4".to_owned()),
+            "photons.radius" => between(self.photons.radius, 0.01, 100.0),
             "path.spp" => within(self.path.spp, 1, 1 << 20),
             _ => Ok(()),
         }

@@ -1,0 +1,3 @@
+//! Methods of the `caustics` slot.
+
+pub(crate) mod photons;
