@@ -15,6 +15,9 @@
 
 layout(local_size_x = 64) in;
 
+// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
+layout(constant_id = 2) const uint SPECULAR_CAUSTICS = 0u;
+
 layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
 layout(set = 0, binding = 2) uniform samplerBuffer path_states;
@@ -78,7 +81,11 @@ bool connect_to_camera(uint path) {
     vec3 flux = texelFetch(path_states, int(path)).rgb * transmittance;
     float arriving = max(abs(dot(vertex.geometric_normal, to_light)), 1e-6);
     vec3 light = flux * diffuse.value * (rays_per_area / (arriving * push.light_paths * (1.0 + others)));
-    uint slot = (texelFetch(path_flags, int(path)).x & FLAG_LAST_SPECULAR) != 0u ? 1u : 0u;
+    uint flags = texelFetch(path_flags, int(path)).x;
+    uint slot = (flags & FLAG_LAST_SPECULAR) != 0u ? 1u : 0u;
+    if (SPECULAR_CAUSTICS != 0u && slot == 1u && (flags & FLAG_ALL_SPECULAR) == 0u) {
+        return false;
+    }
     uint place = slot * push.size.x * push.size.y + uint(sight.pixel.y) * push.size.x + uint(sight.pixel.x);
     connection_rays[2u * path] = vec4(offset_ray_origin(vertex.position_rs, vertex.geometric_normal), sight.distance);
     connection_rays[2u * path + 1u] = vec4(sight.to_camera, uintBitsToFloat(place));

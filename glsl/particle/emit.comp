@@ -110,7 +110,7 @@ void main() {
         path_rays[2u * path] = vec4(start.origin, start.cosine);
         path_rays[2u * path + 1u] = vec4(start.direction, start.next_density);
         path_states[path] = vec4(start.flux, start.ratio);
-        path_flags[path] = 0u;
+        path_flags[path] = FLAG_ALL_SPECULAR;
         path_seeds[path] = uvec2(push.seed, index);
     }
     APPEND_TO_QUEUE(active_paths, path, wanted)

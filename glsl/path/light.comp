@@ -19,6 +19,8 @@ layout(local_size_x = 64) in;
 layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
 // Beyond 0, photons carry the light of all emitters but lights with a range to vertices behind the first diffuse one (state.glsl).
 layout(constant_id = 4) const uint PHOTONS = 0u;
+// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
+layout(constant_id = 5) const uint SPECULAR_CAUSTICS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
 layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
@@ -160,6 +162,9 @@ void main() {
         uint flags = texelFetch(path_flags, int(path)).x;
         bool split = push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u;
         uint slot = push.depth == 0u ? SLOT_DIRECT : split ? SLOT_DIFFUSE : flags & FLAG_SLOT_MASK;
+        if (SPECULAR_CAUSTICS != 0u && push.depth > 1u && slot == SLOT_CAUSTICS) {
+            light_of_lobes[0] = vec3(0.0);
+        }
         connection_rays[2u * path] = connection[0];
         connection_rays[2u * path + 1u] = vec4(connection[1].xyz, uintBitsToFloat(slot));
         if (SPECULAR_LOBES == 0u) {

@@ -13,6 +13,8 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 2) const uint FROM_LIGHT = 0u;
 layout(constant_id = 3) const uint LIGHT_PATHS = 1u;
+// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
+layout(constant_id = 4) const uint SPECULAR_CAUSTICS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
 layout(set = 0, binding = 1) uniform usamplerBuffer path_seeds;
@@ -70,6 +72,10 @@ bool scatter(uint path) {
     LobeSample drawn = sample_lobes(vertex.matter, viewer, random.x, random.yz);
     vec3 direction = to_world(frame, drawn.direction);
     float side = dot(vertex.geometric_normal, direction);
+    bool later = FROM_LIGHT == 0u && push.depth > 1u;
+    if (SPECULAR_CAUSTICS != 0u && later && drawn.lobe == LOBE_DIFFUSE && (path_flags[path] & FLAG_SLOT_MASK) == SLOT_CAUSTICS) {
+        return false;
+    }
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
         return false;
     }

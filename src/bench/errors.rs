@@ -8,7 +8,7 @@ use super::report::{ImageErrors, Reference as Compared, Run};
 use super::run::{Finished, SlotImages, Subject};
 use crate::metrics::{self, MetricsError};
 use crate::reference::{
-    Cache, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, estimator_name, sum,
+    Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, estimator_name, sum,
 };
 use crate::renderer::{ColorImage, Context, Settings, Slot};
 
@@ -37,8 +37,8 @@ pub struct References<'a> {
     made: HashMap<Kind, Rc<Reference>>,
 }
 
-/// What the references of a scene differ in: the limit of bounces, and where in a pixel light is sampled.
-type Kind = (Option<u32>, PixelFilter);
+/// What the references of a scene differ in: the limit of bounces, which caustics, and where in a pixel light is sampled.
+type Kind = (Option<u32>, CausticPaths, PixelFilter);
 
 impl<'a> References<'a> {
     /// The references of `subject` at `size`, of `spp` samples per pixel, light sampled where in a pixel a contender does.
@@ -50,12 +50,13 @@ impl<'a> References<'a> {
         cache: Option<&'a Cache>,
         mut progress: impl FnMut(Progress) + 'a,
     ) -> References<'a> {
-        References::by(move |(bounces, filter)| {
+        References::by(move |(bounces, caustics, filter)| {
             let request = ReferenceRequest {
                 size,
                 camera: subject.camera.clone(),
                 estimator: Estimator::Path,
                 bounces,
+                caustics,
                 filter,
                 seed: 0,
             };
@@ -75,15 +76,25 @@ impl<'a> References<'a> {
     /// No reference; images that are of another size or not finite. The run is then as it was.
     pub fn compare(&mut self, finished: &mut Finished, settings: &Settings) -> Result<(), ErrorsUnknown> {
         let Some(images) = &finished.images else { return Ok(()) };
-        let (bounces, filter) = (settings.bounces(), settings.filter());
-        let (equal, full) = (self.get((bounces, filter))?, self.get((None, filter))?);
+        let filter = settings.filter();
+        let (equal, full) = (self.equal_to(settings, filter)?, self.get((None, CausticPaths::All, filter))?);
         let (error, noise) = errors(images, &equal)?;
         let (error_full, noise_full) = errors(images, &full)?;
-        let compared = |spp, bounces| Compared { technique: estimator_name(Estimator::Path).to_owned(), spp, bounces };
+        let bounces = settings.bounces();
+        let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].into_iter();
+        let filled = indirect.filter(|slot| settings.methods.fills(*slot));
+        let limits = filled.map(|slot| (slot.name().to_owned(), settings.light_paths(slot).0));
+        let slot_bounces: BTreeMap<String, Option<u32>> = limits.filter(|(_, limit)| *limit != bounces).collect();
+        let compared = |spp, bounces, slot_bounces| Compared {
+            technique: estimator_name(Estimator::Path).to_owned(),
+            spp,
+            bounces,
+            slot_bounces,
+        };
         let run = std::mem::take(&mut finished.run);
         finished.run = Run {
-            reference: Some(compared(equal.spp, bounces)),
-            reference_full: Some(compared(full.spp, None)),
+            reference: Some(compared(equal.spp, bounces, slot_bounces)),
+            reference_full: Some(compared(full.spp, None, BTreeMap::new())),
             error: Some(error),
             error_full: Some(error_full),
             noise: Some(noise),
@@ -91,6 +102,27 @@ impl<'a> References<'a> {
             ..run
         };
         Ok(())
+    }
+
+    /// The slots as far as the methods go, each from the reference that is limited like it.
+    fn equal_to(&mut self, settings: &Settings, filter: PixelFilter) -> Result<Rc<Reference>, ErrorsUnknown> {
+        let kind_of = |slot| {
+            let (bounces, caustics) = settings.light_paths(slot);
+            (bounces, caustics, filter)
+        };
+        let whole = self.get(kind_of(Slot::Diffuse))?;
+        if Slot::ALL.into_iter().all(|slot| kind_of(slot) == kind_of(Slot::Diffuse)) {
+            return Ok(whole);
+        }
+        let mut mixed = Reference::clone(&whole);
+        for slot in Slot::ALL {
+            let of_slot = self.get(kind_of(slot))?;
+            mixed.spp = mixed.spp.min(of_slot.spp);
+            mixed.slots.extend(of_slot.slots.get(&slot).map(|image| (slot, image.clone())));
+            mixed.half_differences.extend(of_slot.half_differences.get(&slot).map(|image| (slot, image.clone())));
+        }
+        mixed.image = sum(mixed.image.size, mixed.slots.values());
+        Ok(Rc::new(mixed))
     }
 
     fn get(&mut self, kind: Kind) -> Result<Rc<Reference>, ErrorsUnknown> {
@@ -179,7 +211,7 @@ mod tests {
     #[test]
     fn slots_are_compared_with_the_light_paths_that_methods_account_for() {
         let mut asked = Vec::new();
-        let mut references = References::by(|(bounces, _)| {
+        let mut references = References::by(|(bounces, ..)| {
             asked.push(bounces);
             Ok(reference(bounces))
         });
@@ -193,7 +225,10 @@ mod tests {
         assert_eq!(runs[0], runs[1]);
 
         let run = &runs[0];
-        let compared = |bounces| Some(Compared { technique: "path".to_owned(), spp: 64, bounces });
+        let compared = |bounces| {
+            let slot_bounces = BTreeMap::new();
+            Some(Compared { technique: "path".to_owned(), spp: 64, bounces, slot_bounces })
+        };
         assert_eq!((run.reference.clone(), run.reference_full.clone()), (compared(Some(1)), compared(None)));
         let (error, error_full) = (run.error.as_ref().expect("compared"), run.error_full.as_ref().expect("compared"));
         assert!(error.keys().eq(["covered", "diffuse", "direct", "emission", "image"]), "{error:?}");
@@ -224,7 +259,7 @@ mod tests {
         assert!(error.contains("no light"), "{error}");
         assert_eq!(finished.run, example_run());
 
-        let mut references = References::by(|(bounces, _)| Ok(reference(bounces)));
+        let mut references = References::by(|(bounces, ..)| Ok(reference(bounces)));
         if let Some(images) = &mut finished.images {
             images.slots.insert(Slot::Direct, ColorImage { size: SIZE, pixels: vec![[f32::NAN; 3]; 48] });
         }

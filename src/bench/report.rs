@@ -176,6 +176,9 @@ pub struct Reference {
     pub spp: u32,
     /// Scatterings between the light and the first visible surface; null if they are not limited.
     pub bounces: Option<u32>,
+    /// The limits of slots that have another one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub slot_bounces: BTreeMap<String, Option<u32>>,
 }
 
 /// What could not be run, and why.
@@ -249,7 +252,8 @@ mod tests {
     fn a_report_reads_back() {
         let mut report = Report::new(&DeviceReport::default());
         let errors = BTreeMap::from([("image".to_owned(), ImageErrors { rmse: 0.1, ..ImageErrors::default() })]);
-        let reference = Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1) };
+        let reference =
+            Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1), slot_bounces: BTreeMap::new() };
         report.runs.push(Run { reference: Some(reference), error: Some(errors), ..example_run() });
         report.failures.push(Failure {
             scene: "a".to_owned(),

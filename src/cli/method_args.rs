@@ -28,7 +28,8 @@ pub(crate) struct OptionArgs {
     /// Samples a pixel of traced paths, the same as --set path.spp=N
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     spp: Option<u32>,
-    /// Scatterings between the light and the first visible surface at most, for traced paths; 0: direct light alone [default: no limit]
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone. The same as --set path.bounces=N, vpl.bounces=N
+    /// and photons.bounces=N (of these at most 16) [default: each method's own]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
     /// Which of the equally good sequences of samples is taken
@@ -41,6 +42,9 @@ pub(crate) struct OptionArgs {
     #[arg(long, value_name = "PIECE.KEY=VALUE", value_parser = values::setting)]
     set: Vec<Setting>,
 }
+
+/// What `vpl.bounces` and `photons.bounces` take.
+const MOST_RASTER_BOUNCES: u32 = 16;
 
 impl OptionArgs {
     fn chooses_filter(&self) -> bool {
@@ -66,12 +70,16 @@ impl OptionArgs {
         path.bounces = self.bounces.or(path.bounces);
         path.seed = self.seed.unwrap_or(path.seed);
         path.filter = self.filter.unwrap_or(path.filter);
+        if let Some(bounces) = self.bounces {
+            let bounces = bounces.min(MOST_RASTER_BOUNCES);
+            (settings.vpl.bounces, settings.photons.bounces) = (bounces, bounces);
+        }
         for Setting { key, value } in &self.set {
             settings.set(key, value)?;
         }
         if self.bounces.is_some() && settings.bounces() != self.bounces {
             tracing::warn!(
-                "--bounces {} is for traced paths; {} has {} by its methods",
+                "--bounces {} is not what {} can do; it has {} by its methods",
                 self.bounces.unwrap_or_default(),
                 technique.name(),
                 settings.bounces().map_or("no limit".to_owned(), |bounces| bounces.to_string()),

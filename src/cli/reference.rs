@@ -8,7 +8,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::tables;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::{
-    Cache, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name, merge,
+    Cache, CausticPaths, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, caustics_name,
+    estimator_name, merge,
 };
 
 use super::scene_args::SceneArgs;
@@ -38,6 +39,9 @@ pub(crate) struct ReferenceArgs {
     /// Scatterings between the light and the first visible surface at most; 0 is direct light [default: no limit]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
+    /// Which light the slot caustics shows: all of it, or only what met nothing but specular lobes on its way from the light
+    #[arg(long, value_parser = caustics(), default_value = "all")]
+    caustics: CausticPaths,
     /// Where in a pixel light is sampled
     #[arg(long, value_parser = values::pixel_filter(), default_value = "center")]
     filter: PixelFilter,
@@ -105,6 +109,7 @@ fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>)
         camera: args.scene_args.view(&scene)?,
         estimator: args.estimator,
         bounces: args.bounces,
+        caustics: args.caustics,
         filter: args.filter,
         seed: args.seed,
     };
@@ -194,6 +199,14 @@ fn estimator() -> impl TypedValueParser<Value = Estimator> {
     PossibleValuesParser::new(ALL.map(estimator_name)).try_map(|name| {
         let found = ALL.into_iter().find(|estimator| estimator_name(*estimator) == name);
         found.ok_or_else(|| format!("there is no estimator {name:?}"))
+    })
+}
+
+fn caustics() -> impl TypedValueParser<Value = CausticPaths> {
+    const ALL: [CausticPaths; 2] = [CausticPaths::All, CausticPaths::Specular];
+    PossibleValuesParser::new(ALL.map(caustics_name)).try_map(|name| {
+        let found = ALL.into_iter().find(|caustics| caustics_name(*caustics) == name);
+        found.ok_or_else(|| format!("there are no caustics {name:?}"))
     })
 }
 

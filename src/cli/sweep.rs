@@ -104,7 +104,10 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
     for scene in &grid.scenes {
         scene.find(folder).map_err(|error| anyhow!("{}: {error}", path.display()))?;
     }
-    grid.size = args.size.unwrap_or(grid.size);
+    if let Some(size) = args.size {
+        grid.size = size;
+        grid.scenes.iter_mut().for_each(|scene| scene.size = None);
+    }
     grid.reference = args.reference.or(grid.reference);
     grid.frames = args.frames.unwrap_or(grid.frames);
     let mut points = grid.points()?;
@@ -199,7 +202,8 @@ impl Bench<'_> {
         let Opened { name, scene, camera, load_ms } = &opened;
         let subject = Subject { name, scene, camera, load_ms: *load_ms };
         let contenders: Vec<Settings> = group.points.iter().map(|point| point.settings.clone()).collect();
-        let Grid { size, frames, warmup, max_seconds, .. } = *self.grid;
+        let Grid { frames, warmup, max_seconds, .. } = *self.grid;
+        let size = self.grid.size_of(group.scene);
         let slots = self.grid.reference.is_some();
         let options = Options { size, frames, warmup, max_seconds, pictures: false, slots };
         let outcomes = measure(self.context, &subject, &contenders, &options, &mut || ());

@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::session::Session;
 use crate::reference::traced_scene::TracedScene;
 use crate::reference::tracer::{PathTracer, TraceCost};
-use crate::reference::{Estimator, PixelFilter, ReferenceRequest};
+use crate::reference::{CausticPaths, Estimator, PixelFilter, ReferenceRequest};
 use crate::renderer::Slot;
 use crate::scene::{CameraView, MaterialId, Primitive, Projection, Scene};
 use crate::vulkan::Device;
@@ -18,6 +18,7 @@ pub(super) struct Ask {
     pub(super) size: [u32; 2],
     pub(super) camera: CameraView,
     pub(super) bounces: Option<u32>,
+    pub(super) caustics: CausticPaths,
     pub(super) filter: PixelFilter,
     pub(super) seed: u32,
     /// Of each half.
@@ -29,7 +30,16 @@ pub(super) struct Ask {
 impl Ask {
     /// All bounces, all over the pixels.
     pub(super) fn new(size: [u32; 2], samples: u32, camera: CameraView) -> Ask {
-        Ask { size, camera, bounces: None, filter: PixelFilter::Box, seed: 0, samples, light_paths: None }
+        Ask {
+            size,
+            camera,
+            bounces: None,
+            caustics: CausticPaths::All,
+            filter: PixelFilter::Box,
+            seed: 0,
+            samples,
+            light_paths: None,
+        }
     }
 }
 
@@ -64,6 +74,7 @@ impl Tracer {
             camera: ask.camera.clone(),
             estimator: Estimator::Path,
             bounces: ask.bounces,
+            caustics: ask.caustics,
             filter: ask.filter,
             seed: ask.seed,
         });

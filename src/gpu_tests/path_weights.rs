@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer, solid_box, sphere, turned};
 use super::scenes::{add_light, lambert, place, quad, view};
 use super::session::Session;
+use crate::reference::CausticPaths;
 use crate::renderer::Slot;
 use crate::scene::{LightKind, Material, Scene};
 
@@ -67,12 +68,20 @@ fn scene(material: Material, thing: Thing, lamp: Lamp) -> Scene {
 
 /// The slots have the same means with and without light paths.
 fn assert_agreement(tracer: &mut Tracer, material: &Material, thing: Thing, lamp: Lamp) {
+    assert_agreement_of(tracer, material, thing, lamp, CausticPaths::All);
+}
+
+fn assert_agreement_of(tracer: &mut Tracer, material: &Material, thing: Thing, lamp: Lamp, caustics: CausticPaths) {
     let scene = scene(material.clone(), thing, lamp);
     let camera = view(DVec3::new(-0.4, 2.0, 3.2), DVec3::new(0.0, 0.7, -0.6));
     let [with, without] = [true, false].map(|light_paths| {
         let samples = SAMPLES[usize::from(!light_paths)];
-        let ask =
-            Ask { light_paths: Some(light_paths), bounces: Some(4), ..Ask::new([80, 80], samples, camera.clone()) };
+        let ask = Ask {
+            light_paths: Some(light_paths),
+            bounces: Some(4),
+            caustics,
+            ..Ask::new([80, 80], samples, camera.clone())
+        };
         tracer.trace(&scene, &ask)
     });
     let mut failures = Vec::new();
@@ -136,4 +145,29 @@ fn rough_glass_sends_the_same_light_either_way() {
             assert_agreement(&mut tracer, &glass(thickness), thing, lamp);
         }
     }
+}
+
+#[test]
+fn caustics_of_specular_paths_alone_are_the_same_either_way() {
+    let session = Session::open();
+    let mut tracer = Tracer::new(&session);
+    let metal = Material { metallic: 1.0, roughness: 0.45, ..lambert([0.9, 0.7, 0.5]) };
+    assert_agreement_of(&mut tracer, &metal, Thing::FlatBox, Lamp::Panel, CausticPaths::Specular);
+
+    let scene = scene(metal, Thing::FlatBox, Lamp::Panel);
+    let mut means = |bounces, caustics| {
+        let camera = view(DVec3::new(-0.4, 2.0, 3.2), DVec3::new(0.0, 0.7, -0.6));
+        let ask = Ask { bounces: Some(bounces), caustics, ..Ask::new([48, 48], 32, camera) };
+        let traced = tracer.trace(&scene, &ask);
+        [Slot::Diffuse, Slot::Caustics].map(|slot| traced.mean(slot).element_sum())
+    };
+    // After one scattering it was a specular one; after more, some light scattered diffusely before that.
+    let [one, one_specular] = [CausticPaths::All, CausticPaths::Specular].map(|caustics| means(1, caustics));
+    assert_eq!(one, one_specular);
+    let [more, more_specular] = [CausticPaths::All, CausticPaths::Specular].map(|caustics| means(4, caustics));
+    assert!(
+        more_specular[1] < 0.98 * more[1] && more_specular[1] >= one[1] * 0.99,
+        "{more_specular:?} of {more:?}, {one:?}"
+    );
+    assert!((more_specular[0] / more[0] - 1.0).abs() < 0.02, "{more_specular:?} of {more:?}");
 }

@@ -2,7 +2,9 @@
 
 use super::session::Session;
 use crate::output::atomic_file::tests::TestFolder;
-use crate::reference::{Cache, Estimator, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, merge};
+use crate::reference::{
+    Cache, CausticPaths, Estimator, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, merge,
+};
 use crate::renderer::{FrameRequest, Preset, Settings, Slot, Technique};
 use crate::scene::{Material, MaterialId, Scene};
 
@@ -15,6 +17,7 @@ fn request(scene: &Scene) -> ReferenceRequest {
         camera: scene.camera_view(None).expect("it has a camera"),
         estimator: Estimator::Path,
         bounces: Some(1),
+        caustics: CausticPaths::All,
         filter: PixelFilter::Center,
         seed: 0,
     }

@@ -9,14 +9,22 @@ use super::session::Session;
 use crate::reference::sppm::SppmSource;
 use crate::reference::traced_scene::TracedScene;
 use crate::reference::tracer::PathTracer;
-use crate::reference::{Estimator, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
+use crate::reference::{CausticPaths, Estimator, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Light, LightKind, LightSpec, Material, Scene};
 
 const SIZE: [u32; 2] = [64, 64];
 
 fn request(estimator: Estimator, size: [u32; 2], camera: CameraView, bounces: Option<u32>) -> ReferenceRequest {
-    ReferenceRequest { size, camera, estimator, bounces, filter: PixelFilter::Box, seed: 0 }
+    ReferenceRequest {
+        size,
+        camera,
+        estimator,
+        bounces,
+        caustics: CausticPaths::All,
+        filter: PixelFilter::Box,
+        seed: 0,
+    }
 }
 
 /// Means of all slots over all pixels and channels.

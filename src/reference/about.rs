@@ -2,13 +2,13 @@
 
 use serde_json::json;
 
-use super::key::{estimator_name, filter_name, hexadecimal};
+use super::key::{caustics_name, estimator_name, filter_name, hexadecimal};
 use super::{REFERENCE_VERSION, ReferenceKey, ReferenceRequest};
 use crate::output::Attributes;
 use crate::scene::{CameraView, Projection, Scene};
 
 /// The attributes of [`About`], all of which a reference's file has.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 13] = [
     "key",
     "reference_version",
     "scene",
@@ -18,6 +18,7 @@ const NAMES: [&str; 12] = [
     "size",
     "estimator",
     "bounces",
+    "caustics",
     "filter",
     "seed",
     "chunk_samples",
@@ -47,6 +48,7 @@ impl About {
             format!("{width}x{height}"),
             estimator_name(request.estimator).to_owned(),
             bounces,
+            caustics_name(request.caustics).to_owned(),
             filter_name(request.filter).to_owned(),
             request.seed.to_string(),
             super::CHUNK_SAMPLES.to_string(),

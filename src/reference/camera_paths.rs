@@ -134,6 +134,7 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
         light_paths: variants.light_paths,
         emissive_textures: u32::from(scene.emissive_textures),
         photons: variants.photons,
+        specular_caustics: variants.specular_caustics,
         push: shaders::LightPush {
             emitter_count: scene.emitter_count,
             depth,

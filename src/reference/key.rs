@@ -3,7 +3,7 @@
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Digest, Projection, Scene};
 
-use super::{Estimator, PixelFilter, ReferenceRequest};
+use super::{CausticPaths, Estimator, PixelFilter, ReferenceRequest};
 
 /// Counts the changes of how references are made; those of another version are not used. Raise it with every change that
 /// makes other samples of the same request: sampling, materials, lights, slots.
@@ -19,12 +19,12 @@ impl ReferenceKey {
 
     /// The key of what `request` asks of `scene`.
     pub fn of(scene: &Scene, request: &ReferenceRequest) -> ReferenceKey {
-        let ReferenceRequest { size, camera, estimator, bounces, filter, seed } = request;
+        let ReferenceRequest { size, camera, estimator, bounces, caustics, filter, seed } = request;
         let mut digest = Digest::new("reference");
         digest.u32s(&[REFERENCE_VERSION, super::CHUNK_SAMPLES, Slot::ALL.len() as u32]);
         digest.bytes(&scene.content_hash()).u32s(size);
         add_camera(&mut digest, camera);
-        digest.text(estimator_name(*estimator)).text(filter_name(*filter));
+        digest.text(estimator_name(*estimator)).text(caustics_name(*caustics)).text(filter_name(*filter));
         digest.option(*bounces, |digest, bounces| digest.u32s(&[bounces])).u32s(&[*seed]);
         ReferenceKey(hexadecimal(&digest.finish()))
     }
@@ -57,6 +57,14 @@ pub fn estimator_name(estimator: Estimator) -> &'static str {
     match estimator {
         Estimator::Path => "path",
         Estimator::Sppm => "sppm",
+    }
+}
+
+/// The name of which caustics a reference shows, on the command line and in files.
+pub fn caustics_name(caustics: CausticPaths) -> &'static str {
+    match caustics {
+        CausticPaths::All => "all",
+        CausticPaths::Specular => "specular",
     }
 }
 

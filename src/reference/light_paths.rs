@@ -162,6 +162,7 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, scen
         connections: paths.connections.read_write(),
         specular_lobes: variants.specular,
         transmissive: variants.transmissive,
+        specular_caustics: variants.specular_caustics,
         push: shaders::CameraPush {
             rays: camera_rays(view),
             size: view.size,

@@ -39,7 +39,7 @@ pub use self::blocks::CHUNK_SAMPLES;
 pub use self::cache::{Cache, Entry, EntryContent};
 pub use self::error::ReferenceError;
 pub use self::file::ReferenceFile;
-pub use self::key::{REFERENCE_VERSION, ReferenceKey, estimator_name, filter_name};
+pub use self::key::{REFERENCE_VERSION, ReferenceKey, caustics_name, estimator_name, filter_name};
 pub use self::noise::Noise;
 pub use self::obtain::{Goal, Job, MAX_SPP, Progress, obtain};
 pub(crate) use self::result::sum;
@@ -69,6 +69,17 @@ pub enum PixelFilter {
     Box,
 }
 
+/// Which light the slot `caustics` shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CausticPaths {
+    /// All that reaches a diffuse lobe from a specular vertex, L (D|S)* S D E: the slot's definition.
+    #[default]
+    All,
+    /// Only what met nothing but specular lobes on its way from the light, L S⁺ D E: what photons from specular surfaces can find.
+    Specular,
+}
+
 /// What a reference shows; the samples to come do not change it, they only lessen its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceRequest {
@@ -80,6 +91,8 @@ pub struct ReferenceRequest {
     pub estimator: Estimator,
     /// Scatterings between the light and the first visible surface at most; 0: direct light alone; `None`: no limit.
     pub bounces: Option<u32>,
+    /// Which light the slot `caustics` shows.
+    pub caustics: CausticPaths,
     /// Where in a pixel light is sampled.
     pub filter: PixelFilter,
     /// Which of the equally good sequences of samples is taken.
@@ -125,6 +138,7 @@ fn source<'a>(
     let request = ReferenceRequest { seed: request.seed ^ SEEDS_OF_REFERENCES, ..request.clone() };
     match request.estimator {
         Estimator::Path => Ok(Box::new(tracer::PathSource::new(context, scene, &request)?)),
+        Estimator::Sppm if request.caustics != CausticPaths::All => Err(Error::SppmCaustics),
         Estimator::Sppm => Ok(Box::new(sppm::SppmSource::new(context, scene, &request)?)),
     }
 }

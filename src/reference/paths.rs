@@ -5,9 +5,9 @@
 
 use ash::vk;
 
-use super::PixelFilter;
 use super::traced_scene::{TracedBindings, TracedScene};
 use super::tracer::View;
+use super::{CausticPaths, PixelFilter};
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
 use crate::graph::{Dependence, Graph, ReadBack};
 use crate::renderer::Slot;
@@ -47,6 +47,8 @@ pub(super) struct Variants {
     pub(super) light_paths: u32,
     /// A camera's path leaves light to photons (PHOTONS_ of glsl/path/state.glsl).
     pub(super) photons: u32,
+    /// The slot `caustics` leaves out light that some diffuse lobe scattered on its way.
+    pub(super) specular_caustics: u32,
 }
 
 impl Variants {
@@ -56,6 +58,7 @@ impl Variants {
             transmissive: u32::from(scene.facts.transmissive),
             light_paths: u32::from(scene.needs_light_paths(view.bounces)),
             photons: 0,
+            specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
         }
     }
 }
@@ -227,6 +230,7 @@ impl Paths {
             transmissive: variants.transmissive,
             from_light: walk.flag(),
             light_paths: variants.light_paths,
+            specular_caustics: variants.specular_caustics,
             push: shaders::ScatterPush { depth, reserved: 0 },
         };
         graph.pass(&walk.pass("scatter"), scatter).threads_indirect(self.alive, 0);

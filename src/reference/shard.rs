@@ -93,7 +93,7 @@ fn samples(chunks: &Range<u32>) -> String {
 
 /// Says in what the first thing is that the two references differ in.
 fn different(first: &Path, one: &ReferenceFile, second: &Path, other: &ReferenceFile) -> ReferenceError {
-    let names = ["scene_hash", "size", "camera_view", "estimator", "bounces", "filter", "seed"];
+    let names = ["scene_hash", "size", "camera_view", "estimator", "bounces", "caustics", "filter", "seed"];
     let name = names.into_iter().find(|name| one.about.attribute(name) != other.about.attribute(name));
     let what = match name {
         Some("scene_hash") => "the scene".to_owned(),

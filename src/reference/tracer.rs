@@ -13,7 +13,7 @@ use super::camera_paths::{self, Sums, Wave};
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::paths::Paths;
 use super::traced_scene::TracedScene;
-use super::{PixelFilter, ReferenceRequest, SampleSource, SlotSums};
+use super::{CausticPaths, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
 use crate::frame::camera::camera;
 use crate::graph::{Executed, Graph, GraphDescription, ReadBack, Store};
 use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
@@ -58,6 +58,7 @@ pub(crate) struct View {
     pub(crate) size: [u32; 2],
     pub(crate) camera: types::Camera,
     pub(crate) bounces: Option<u32>,
+    pub(crate) caustics: CausticPaths,
     pub(crate) filter: PixelFilter,
     pub(crate) seed: u32,
 }
@@ -69,6 +70,7 @@ impl View {
             size: request.size,
             camera: camera(&request.camera, request.size, origin),
             bounces: request.bounces,
+            caustics: request.caustics,
             filter: request.filter,
             seed: request.seed,
         }

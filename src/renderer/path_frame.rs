@@ -12,7 +12,7 @@ use crate::graph::{GraphDescription, hash_of};
 use crate::output::tonemap::tone_map;
 use crate::reference::traced_scene::traced_key;
 use crate::reference::tracer::{PathTracer, TraceCost};
-use crate::reference::{Estimator, IMAGE, Noise, ReferenceRequest, SlotSums};
+use crate::reference::{CausticPaths, Estimator, IMAGE, Noise, ReferenceRequest, SlotSums};
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
 
@@ -114,6 +114,7 @@ impl Renderer {
             camera: request.camera.clone(),
             estimator: Estimator::Path,
             bounces: settings.bounces,
+            caustics: CausticPaths::All,
             filter: settings.filter,
             seed: settings.seed,
         }

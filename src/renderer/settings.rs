@@ -8,7 +8,7 @@ use super::options::{
     PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading, VplVisibility, choices,
 };
 use super::slots::Slot;
-use crate::reference::PixelFilter;
+use crate::reference::{CausticPaths, PixelFilter};
 
 /// A setting that does not exist or does not take the value given. One sentence: what, where, what to do.
 #[derive(Debug, thiserror::Error)]
@@ -365,12 +365,7 @@ impl Settings {
     /// a reference of equal light paths is limited to.
     pub fn bounces(&self) -> Option<u32> {
         let Methods { direct: _, diffuse, caustics, specular } = self.methods;
-        let diffuse = match diffuse {
-            DiffuseMethod::None => Some(0),
-            DiffuseMethod::Rsm => Some(1),
-            DiffuseMethod::Vpl => Some(self.vpl.bounces),
-            DiffuseMethod::Path => self.path.bounces,
-        };
+        let diffuse = self.diffuse_bounces(diffuse);
         let caustics = match caustics {
             CausticsMethod::None => Some(0),
             CausticsMethod::Photons => Some(self.photons.bounces),
@@ -381,6 +376,29 @@ impl Settings {
             SpecularMethod::Path => self.path.bounces,
         };
         [diffuse, caustics, specular].into_iter().try_fold(0, |most, bounces| Some(bounces?.max(most)))
+    }
+
+    /// What a reference of equal light paths shows in `slot`: the limit of scatterings, and which caustics. Slots that no indirect method
+    /// fills go with `diffuse`.
+    pub fn light_paths(&self, slot: Slot) -> (Option<u32>, CausticPaths) {
+        let Methods { direct: _, diffuse, caustics, specular } = self.methods;
+        match slot {
+            Slot::Caustics if caustics == CausticsMethod::Photons => {
+                (Some(self.photons.bounces), CausticPaths::Specular)
+            }
+            Slot::Caustics if caustics == CausticsMethod::Path => (self.path.bounces, CausticPaths::All),
+            Slot::Specular if specular == SpecularMethod::Path => (self.path.bounces, CausticPaths::All),
+            _ => (self.diffuse_bounces(diffuse), CausticPaths::All),
+        }
+    }
+
+    fn diffuse_bounces(&self, method: DiffuseMethod) -> Option<u32> {
+        match method {
+            DiffuseMethod::None => Some(0),
+            DiffuseMethod::Rsm => Some(1),
+            DiffuseMethod::Vpl => Some(self.vpl.bounces),
+            DiffuseMethod::Path => self.path.bounces,
+        }
     }
 
     /// Whether the passes that fill `slot` send rays through the scene's hierarchy.

@@ -12,6 +12,9 @@ use crate::bench::report::{ImageErrors, Run};
 use crate::renderer::{Preset, Slot, Technique};
 use crate::scene::{LightSpec, Scene, SceneError, builtin_names};
 
+/// The column of the whole frame.
+pub const FRAME_COLUMN: &str = "frame";
+
 /// A grid: every series on every scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grid {
@@ -33,6 +36,12 @@ pub struct Grid {
     pub entry: String,
     /// How the error is counted.
     pub metric: Metric,
+    /// Columns of tables: times of passes added up, by the beginnings of their full names.
+    #[serde(default)]
+    pub columns: BTreeMap<String, Vec<String>>,
+    /// What others have measured, shown beside the points that it belongs to.
+    #[serde(default)]
+    pub published: Vec<Published>,
     /// The scenes, at least one.
     pub scenes: Vec<GridScene>,
     /// The series, at least one.
@@ -52,6 +61,22 @@ pub struct GridScene {
     pub light: Vec<String>,
     /// Radiance of the sky, W/(m² sr); `None`: the scene's own.
     pub sky: Option<[f32; 3]>,
+    /// Width and height in pixels; `None`: the grid's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<[u32; 2]>,
+}
+
+/// Times that somebody published of one point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Published {
+    /// The scene's name in the grid.
+    pub scene: String,
+    /// The settings that tell the point from others of the scene.
+    #[serde(default)]
+    pub values: BTreeMap<String, Value>,
+    /// Milliseconds by the names of columns, and of the whole `frame`.
+    pub ms: BTreeMap<String, f64>,
 }
 
 /// One technique with settings that vary; a line of a plot.
@@ -207,6 +232,21 @@ impl Grid {
     /// The entries that an error can be of.
     pub fn entries() -> Vec<&'static str> {
         ["image", "covered"].into_iter().chain(Slot::ALL.into_iter().map(Slot::name)).collect()
+    }
+}
+
+impl Grid {
+    /// Width and height of a scene's frames.
+    pub fn size_of(&self, scene: &GridScene) -> [u32; 2] {
+        scene.size.unwrap_or(self.size)
+    }
+
+    /// What somebody published of a point with these values: milliseconds by column.
+    pub fn published_of(&self, scene: &str, values: &BTreeMap<String, Value>) -> Option<&BTreeMap<String, f64>> {
+        let is_of = |entry: &&Published| {
+            entry.scene == scene && entry.values.iter().all(|(key, value)| values.get(key) == Some(value))
+        };
+        self.published.iter().find(is_of).map(|entry| &entry.ms)
     }
 }
 

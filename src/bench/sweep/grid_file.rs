@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::grid::{Compare, Grid, GridScene, Interleave, Metric, Series};
+use super::grid::{Compare, FRAME_COLUMN, Grid, GridScene, Interleave, Metric, Published, Series};
 use crate::renderer::{Preset, Technique};
 use crate::scene::LightSpec;
 
@@ -30,6 +30,10 @@ struct File {
     entry: String,
     #[serde(default)]
     metric: Metric,
+    #[serde(default)]
+    columns: BTreeMap<String, Vec<String>>,
+    #[serde(default)]
+    published: Vec<Published>,
     scenes: Vec<toml::Value>,
     series: Vec<toml::Table>,
 }
@@ -59,6 +63,7 @@ struct FileScene {
     #[serde(default)]
     light: Vec<String>,
     sky: Option<[f32; 3]>,
+    size: Option<[u32; 2]>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -107,17 +112,37 @@ pub(super) fn parse(text: &str) -> Result<Grid, String> {
         compare: file.compare,
         entry: file.entry,
         metric: file.metric,
+        columns: file.columns,
+        published: file.published,
         scenes: scenes.collect::<Result<_, _>>()?,
         series: series.collect::<Result<_, _>>()?,
     };
+    for published in &grid.published {
+        check_published(&grid, published)?;
+    }
     distinct("scene", grid.scenes.iter().map(|scene| &scene.name))?;
     distinct("series", grid.series.iter().map(|series| &series.name))?;
     Ok(grid)
 }
 
+/// Whether what is published belongs to a scene and to columns that there are.
+fn check_published(grid: &Grid, published: &Published) -> Result<(), String> {
+    let scenes: Vec<&str> = grid.scenes.iter().map(|scene| scene.name.as_str()).collect();
+    if !scenes.contains(&published.scene.as_str()) {
+        return Err(format!("published: there is no scene {:?}; scenes: {}", published.scene, scenes.join(", ")));
+    }
+    let columns: Vec<&str> = grid.columns.keys().map(String::as_str).chain([FRAME_COLUMN]).collect();
+    match published.ms.keys().find(|name| !columns.contains(&name.as_str())) {
+        Some(name) => Err(format!("published: there is no column {name:?}; columns: {}", columns.join(", "))),
+        None => Ok(()),
+    }
+}
+
 fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     let scene = match scene {
-        toml::Value::String(path) => FileScene { path, name: None, camera: None, light: Vec::new(), sky: None },
+        toml::Value::String(path) => {
+            FileScene { path, name: None, camera: None, light: Vec::new(), sky: None, size: None }
+        }
         table => {
             let named = table.get("name").or_else(|| table.get("path")).and_then(toml::Value::as_str);
             let label = label("scene", index, named);
@@ -131,6 +156,9 @@ fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     if scene.sky.is_some_and(|sky| sky.iter().any(|value| !(0.0..=f32::MAX).contains(value))) {
         return Err(format!("{label}: sky takes three numbers of at least 0, W/(m² sr)"));
     }
+    if scene.size.is_some_and(|size| size.contains(&0)) {
+        return Err(format!("{label}: size is at least 1"));
+    }
     let camera = match scene.camera {
         None => None,
         Some(toml::Value::String(name)) => Some(name),
@@ -139,7 +167,7 @@ fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     };
     let stem = Path::new(&scene.path).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let name = scene.name.or(stem).unwrap_or_default();
-    Ok(GridScene { name, path: scene.path, camera, light: scene.light, sky: scene.sky })
+    Ok(GridScene { name, path: scene.path, camera, light: scene.light, sky: scene.sky, size: scene.size })
 }
 
 fn read_series(index: usize, table: toml::Table) -> Result<Series, String> {
@@ -231,7 +259,8 @@ mod tests {
 
     #[test]
     fn scenes_may_be_tables() {
-        let scene = "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3] }";
+        let scene =
+            "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3], size = [64, 32] }";
         let grid = parse(&format!("scenes = [\"ring\", {scene}]\n{SERIES}")).expect("sound");
         let expected = GridScene {
             name: "white-room".to_owned(),
@@ -239,6 +268,7 @@ mod tests {
             camera: Some("0".to_owned()),
             light: vec!["sun:45,60".to_owned()],
             sky: Some([1.0, 2.0, 3.0]),
+            size: Some([64, 32]),
         };
         assert_eq!(grid.scenes[1], expected);
     }
@@ -252,7 +282,7 @@ mod tests {
         assert_says(&format!("{scenes}{SERIES}vari = {{}}"), &["dir/x.toml", "series \"a\"", "vari", "vary"]);
         assert_says(
             &format!("{scenes}[[series]]\nname = \"a\"\ntechnique = \"rms\""),
-            &["series \"a\"", "rms", "direct, rsm, path"],
+            &["series \"a\"", "rms", "direct, rsm, hybrid, path"],
         );
         assert_says(&format!("{scenes}{SERIES}preset = [\"fast\"]"), &["series \"a\"", "fast", "draft, default"]);
         assert_says(&format!("{scenes}{SERIES}preset = 3"), &["series \"a\"", "a name or a list"]);
@@ -272,6 +302,10 @@ mod tests {
         assert_says(&format!("scenes = [{{ file = \"a.glb\" }}]\n{SERIES}"), &["scene 1", "file", "path"]);
         let light = "{ path = \"ring\", light = [\"moon:1,2\"] }";
         assert_says(&format!("scenes = [{light}]\n{SERIES}"), &["scene \"ring\"", "moon"]);
+        let published =
+            |entry: &str| format!("{scenes}columns = {{ a = [\"gbuffer\"] }}\n{SERIES}[[published]]\n{entry}");
+        assert_says(&published("scene = \"maze\"\nms = { a = 1 }"), &["published", "maze", "scenes: ring"]);
+        assert_says(&published("scene = \"ring\"\nms = { b = 1 }"), &["published", "\"b\"", "columns: a, frame"]);
         assert_says(&format!("scenes = []\n{SERIES}"), &["scenes is empty"]);
     }
 }

@@ -23,7 +23,7 @@ mod text;
 pub use csv::csv;
 pub use execute::{Group, Outcomes, groups, run};
 pub use fit::{EqualTime, equal_time, slope};
-pub use grid::{Compare, Grid, GridError, GridScene, Interleave, Metric, Series};
+pub use grid::{Compare, FRAME_COLUMN, Grid, GridError, GridScene, Interleave, Metric, Published, Series};
 pub use lines::{Line, Mark, lines};
 pub use pareto::pareto_front;
 pub use plot::plot;

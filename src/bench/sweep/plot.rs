@@ -92,7 +92,8 @@ impl Legend {
 impl Canvas<'_> {
     /// The title, what is shown, and what measured it.
     fn head(&self, sweep: &Sweep, scene: &str) -> Drawn {
-        let [width, height] = sweep.grid.size;
+        let of_scene = sweep.grid.scenes.iter().find(|known| known.name == scene);
+        let [width, height] = of_scene.map_or(sweep.grid.size, |scene| sweep.grid.size_of(scene));
         let spp = sweep.grid.reference.map(|spp| format!(", reference of {spp} samples per pixel")).unwrap_or_default();
         self.text((LEFT, 24), &format!("{scene}, {width} × {height} pixels"), &title(), HPos::Left)?;
         self.text((LEFT, 45), &format!("Error: {}{spp}", sweep.grid.error_words()), &body(INK), HPos::Left)?;

@@ -1,10 +1,11 @@
 //! A scene's points as a table for a terminal, and what they come to.
 
 use super::fit::{EqualTime, equal_time, slope};
-use super::grid::Compare;
+use super::grid::{Compare, FRAME_COLUMN};
 use super::lines::{Line, Mark, lines};
 use super::points::written;
 use super::result::Sweep;
+use crate::bench::report::{Pass as PassRow, Run};
 use crate::bench::tables::table;
 use crate::bench::units;
 
@@ -25,8 +26,13 @@ pub fn scene_text(sweep: &Sweep, scene: &str) -> String {
 }
 
 fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
-    let header = ["series", "values", "frame ms", "rrmse equal", "rrmse full", "flip", "Pareto"];
-    let mut table = table(&header, &[2, 3, 4, 5]);
+    let columns = sweep.grid.columns.keys().map(|name| format!("{name} ms"));
+    let header: Vec<String> = ["series", "values"].map(str::to_owned).into_iter().chain(columns).collect();
+    let header =
+        header.into_iter().chain(["frame ms", "rrmse equal", "rrmse full", "flip", "Pareto"].map(str::to_owned));
+    let header: Vec<String> = header.collect();
+    let numbers: Vec<usize> = (2..header.len() - 1).collect();
+    let mut table = table(&header.iter().map(String::as_str).collect::<Vec<_>>(), &numbers);
     for line in lines {
         for mark in &line.marks {
             table.add_row(point_cells(sweep, mark));
@@ -35,19 +41,38 @@ fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     table.trim_fmt()
 }
 
-fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> [String; 7] {
+/// Milliseconds, and in brackets what somebody published of the same point.
+fn time_cell(ours: f64, published: Option<f64>) -> String {
+    let ours = units::milliseconds(ours);
+    published.map_or(ours.clone(), |theirs| format!("{ours} ({theirs})"))
+}
+
+/// The passes whose full names begin so, added up, milliseconds.
+fn column_ms(run: &Run, beginnings: &[String]) -> f64 {
+    let is_of = |row: &&PassRow| {
+        let name = format!("{}/{}", row.piece, row.pass);
+        beginnings.iter().any(|beginning| name.starts_with(beginning))
+    };
+    run.passes.iter().filter(is_of).map(|row| row.ms.median).sum()
+}
+
+fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
     let measured = mark.measured;
     let errors = |compare| sweep.grid.errors(&measured.run, compare);
     let values = measured.values.iter().map(|(key, value)| format!("{key} {}", written(value)));
-    [
-        measured.series.clone(),
-        values.collect::<Vec<_>>().join(", "),
-        units::milliseconds(mark.time_ms),
+    let published = sweep.grid.published_of(&measured.scene, &measured.values);
+    let theirs = |column: &str| published.and_then(|ms| ms.get(column)).copied();
+    let columns = sweep.grid.columns.iter();
+    let columns = columns.map(|(name, passes)| time_cell(column_ms(&measured.run, passes), theirs(name)));
+    let rest = [
+        time_cell(mark.time_ms, theirs(FRAME_COLUMN)),
         optional(errors(Compare::Equal).map(|errors| errors.rrmse)),
         optional(errors(Compare::Full).map(|errors| errors.rrmse)),
         optional(errors(sweep.grid.compare).map(|errors| errors.flip)),
         if mark.pareto { "*" } else { "" }.to_owned(),
-    ]
+    ];
+    let leading = [measured.series.clone(), values.collect::<Vec<_>>().join(", ")];
+    leading.into_iter().chain(columns).chain(rest).collect()
 }
 
 fn lines_table(lines: &[Line<'_>]) -> String {
@@ -81,7 +106,13 @@ fn optional(error: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use serde_json::Value;
+
     use super::*;
+    use crate::bench::statistics::Spread;
+    use crate::bench::sweep::Published;
     use crate::bench::sweep::execute::tests::whole;
 
     #[test]
@@ -99,6 +130,31 @@ mod tests {
             text.lines().filter(|line| line.starts_with(" gathered") && !line.contains("vpls")).collect();
         assert!(slopes.len() == 1 && slopes[0].contains("0.90"), "{text}");
         assert_eq!(scene_text(&sweep, "maze"), "");
+    }
+
+    #[test]
+    fn published_times_stand_beside_those_of_their_point() {
+        let mut sweep = whole();
+        let pass = |piece: &str, pass: &str, median: f64| PassRow {
+            piece: piece.to_owned(),
+            pass: pass.to_owned(),
+            ms: Spread { median, ..Spread::default() },
+            ..PassRow::default()
+        };
+        for measured in &mut sweep.points {
+            measured.run.passes =
+                vec![pass("diffuse/rsm", "scan", 1.5), pass("diffuse/rsm", "vpls", 2.0), pass("direct", "rest", 9.0)];
+        }
+        sweep.grid.columns = BTreeMap::from([("gather".to_owned(), vec!["diffuse/rsm".to_owned()])]);
+        sweep.grid.published = vec![Published {
+            scene: "ring".to_owned(),
+            values: BTreeMap::from([("rsm.vpls".to_owned(), Value::from(64))]),
+            ms: BTreeMap::from([("gather".to_owned(), 7.25)]),
+        }];
+        let text = scene_text(&sweep, "ring");
+        let row = |words: &str| text.lines().find(|line| line.contains(words)).expect("a row").to_owned();
+        assert!(row("rsm.vpls 64").contains("3.500 (7.25)"), "{text}");
+        assert!(row("rsm.vpls 16").contains("3.500") && !row("rsm.vpls 16").contains('('), "{text}");
     }
 
     #[test]

@@ -81,6 +81,7 @@ pub(super) fn request(size: [u32; 2]) -> ReferenceRequest {
         camera: CameraView::look_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, projection),
         estimator: Estimator::Path,
         bounces: None,
+        caustics: CausticPaths::All,
         filter: PixelFilter::Center,
         seed: 0,
     }
