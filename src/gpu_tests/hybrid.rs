@@ -1,0 +1,235 @@
+//! The technique `hybrid` as a whole: what it skips, that it repeats, that nothing it is given breaks it, how still it is.
+
+use glam::{DAffine3, DVec3};
+
+use super::path_probe::{Ask, Tracer};
+use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, quad, request, view};
+use super::session::Session;
+use crate::renderer::{ColorImage, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
+use crate::scene::{CameraView, LightKind, Material, Scene};
+
+const INDIRECT: [Slot; 2] = [Slot::Diffuse, Slot::Caustics];
+
+fn hybrid(preset: Preset, changes: &[(&str, &str)]) -> Settings {
+    let mut settings = Settings::new(Technique::Hybrid, preset);
+    for (key, value) in changes {
+        settings.set(key, value).expect("a setting and its value");
+    }
+    settings
+}
+
+/// Settings whose every way of doing things is tried by some test.
+fn variants() -> Vec<Settings> {
+    let small = [("lights.resolution", "128"), ("vpl.count", "64"), ("photons.max", "4000")];
+    let variant = |preset, more: &[(&str, &str)]| hybrid(preset, &[&small[..], more].concat());
+    vec![
+        variant(Preset::Default, &[]),
+        variant(Preset::Paper, &[]),
+        variant(Preset::High, &[("vpl.bounces", "3")]),
+        variant(
+            Preset::Default,
+            &[("vpl.visibility", "ism"), ("vpl.shading", "stencil"), ("photons.trace", "march"), ("photons.splat", "discs")],
+        ),
+        variant(
+            Preset::Paper,
+            &[("vpl.shading", "pixels"), ("photons.geometry", "layers:2"), ("photons.splat", "tiles"), ("photons.downscale", "2")],
+        ),
+    ]
+}
+
+fn everything(scene: &Scene, size: [u32; 2]) -> FrameRequest {
+    let camera = scene.camera_view(None).expect("a view");
+    FrameRequest { timing: Timing::Passes, ..request(size, camera, &Slot::ALL) }
+}
+
+fn assert_sound(what: &str, frame: &Frame) {
+    for (slot, image) in &frame.slots {
+        for (index, pixel) in image.pixels.iter().enumerate() {
+            let sound = pixel.iter().all(|channel| channel.is_finite() && *channel >= 0.0);
+            assert!(sound, "{what}: {pixel:?} at {index} of {slot}");
+        }
+    }
+}
+
+fn mean(image: &ColorImage) -> f64 {
+    let sum: f64 = image.pixels.as_flattened().iter().map(|&channel| f64::from(channel)).sum();
+    sum / image.pixels.as_flattened().len() as f64
+}
+
+fn maximum(image: &ColorImage) -> f32 {
+    image.pixels.as_flattened().iter().copied().fold(0.0, f32::max)
+}
+
+fn ran(frame: &Frame, piece: &str) -> bool {
+    frame.timings.passes.iter().any(|pass| pass.skipped.is_none() && pass.piece.starts_with(piece))
+}
+
+fn reason<'f>(frame: &'f Frame, piece: &str) -> Option<&'f str> {
+    frame.timings.passes.iter().find(|pass| pass.piece.starts_with(piece))?.skipped.as_deref()
+}
+
+#[test]
+fn a_scene_without_specular_surfaces_records_no_photon() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let frame = session.render(&scene, &hybrid(Preset::Default, &[]), &everything(&scene, [40, 32]));
+    assert!(ran(&frame, "diffuse/vpl") && !ran(&frame, "caustics"));
+    assert_eq!(reason(&frame, "caustics"), Some("no specular or transmissive surface"));
+
+    let mut metal = closed_box(1.0, Material { metallic: 1.0, ..lambert([0.9; 3]) });
+    add_light(&mut metal, LightKind::Point, DVec3::ZERO, DVec3::NEG_Y, [1.0; 3]);
+    let frame = session.render(&metal, &hybrid(Preset::Default, &[]), &everything(&metal, [40, 32]));
+    assert!(!ran(&frame, "diffuse") && !ran(&frame, "caustics"));
+    assert_eq!(reason(&frame, "diffuse/vpl"), Some("no diffuse surface"));
+}
+
+#[test]
+fn nothing_runs_again_where_nothing_moved() {
+    for name in ["ring", "water"] {
+        for settings in variants() {
+            let session = Session::open();
+            let (scene, mut renderer) = (builtin(name), session.renderer(&settings));
+            let request = everything(&scene, [48, 40]);
+            let first = renderer.render(&scene, &request).expect("a frame");
+            let second = renderer.render(&scene, &request).expect("a frame");
+            let again: Vec<_> = second.timings.passes.iter().filter(|pass| pass.skipped.is_none()).collect();
+            assert!(again.is_empty(), "{name}, {settings:?}: {again:?}");
+            assert_eq!(first.slots, second.slots);
+        }
+    }
+}
+
+#[test]
+fn two_runs_give_the_same_bits() {
+    for name in ["ring", "water", "lights"] {
+        for settings in variants() {
+            let scene = builtin(name);
+            let frame = || Session::open().render(&scene, &settings, &everything(&scene, [64, 48]));
+            let [first, second] = [frame(), frame()];
+            for slot in INDIRECT {
+                let bits = |frame: &Frame| -> Vec<u32> {
+                    frame.slots[&slot].pixels.as_flattened().iter().map(|value| value.to_bits()).collect()
+                };
+                assert_eq!(bits(&first), bits(&second), "{name}, {slot}: {:?}", settings.options());
+            }
+            assert!(mean(&first.slots[&Slot::Diffuse]) > 0.0, "{name} has diffuse light to compare");
+            assert!(name == "lights" || mean(&first.slots[&Slot::Caustics]) > 0.0, "{name} has caustics to compare");
+        }
+    }
+}
+
+/// A room with a ball-like box of this material in it.
+fn room(material: Material, light: DVec3) -> Scene {
+    let mut scene = Scene::empty("room");
+    let white = scene.add_material(lambert([0.7; 3])).expect("a sound material");
+    let thing = scene.add_material(material).expect("a sound material");
+    place(&mut scene, box_faces([1.0; 3], [white; 6]), DAffine3::IDENTITY);
+    let corners = [[-0.4, -0.5, -0.4], [-0.4, -0.3, 0.4], [0.4, -0.3, 0.4], [0.4, -0.5, -0.4]];
+    place(&mut scene, vec![quad(corners, thing)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [2.0; 3]);
+    scene
+}
+
+fn inside() -> CameraView {
+    view(DVec3::new(0.8, 0.5, 0.9), DVec3::new(0.0, -0.4, 0.0))
+}
+
+#[test]
+fn no_pixel_outshines_the_truth_whatever_the_surface_and_the_light() {
+    let session = Session::open();
+    let mut tracer = Tracer::new(&session);
+    let on_the_wall = DVec3::new(0.2, 1.0, -0.1);
+    let near_the_wall = DVec3::new(0.2, 0.999, -0.1);
+    for roughness in [0.0, 0.05, 0.3, 1.0] {
+        for light in [DVec3::new(0.1, 0.6, 0.2), near_the_wall, on_the_wall] {
+            let scene = room(Material { metallic: 1.0, roughness, ..lambert([0.9, 0.8, 0.6]) }, light);
+            let ask = Ask { bounces: Some(3), ..Ask::new([40, 32], 16, inside()) };
+            let traced = tracer.trace(&scene, &ask);
+            for settings in variants() {
+                let frame = session.render(&scene, &settings, &request([40, 32], inside(), &Slot::ALL));
+                let what = format!("roughness {roughness}, light at {light}, {:?}", settings.options());
+                assert_sound(&what, &frame);
+                // Where the truth is nearly dark, nothing is asked but that it stays below what is direct.
+                let of = |slot| traced.slot(slot).iter().map(|pixel| pixel.max_element()).fold(0.0, f64::max);
+                let most = INDIRECT.into_iter().chain([Slot::Direct]).map(of).fold(0.0, f64::max);
+                for slot in INDIRECT {
+                    let found = f64::from(maximum(&frame.slots[&slot]));
+                    assert!(found <= 10.0 * most, "{what}: {found} in {slot}, at most {most} in truth");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn any_budget_and_any_size_will_do() {
+    let session = Session::open();
+    let scene = builtin("ring");
+    let camera = scene.camera_view(None).expect("its camera");
+    for budget in ["0", "1", "1000000"] {
+        for trace in ["bvh", "march", "lines"] {
+            let settings = hybrid(Preset::Default, &[("photons.max", budget), ("photons.trace", trace), ("vpl.count", "32")]);
+            let frame = session.render(&scene, &settings, &request([32, 24], camera.clone(), &Slot::ALL));
+            assert_sound(&format!("{budget} photons, {trace}"), &frame);
+            assert_eq!(mean(&frame.slots[&Slot::Caustics]) > 0.0, budget != "0", "{budget} photons, {trace}");
+        }
+    }
+    for settings in variants() {
+        for size in [[1, 1], [17, 5], [3, 33]] {
+            let frame = session.render(&scene, &settings, &request(size, camera.clone(), &Slot::ALL));
+            assert_sound(&format!("{size:?}"), &frame);
+        }
+    }
+}
+
+/// Mean change of luminance from one frame to the next over the mean luminance, where the truth changes by less than 1 % of it.
+fn flicker(frames: &[Vec<f64>], truth: &[Vec<f64>]) -> f64 {
+    let mean = truth.iter().flatten().sum::<f64>() / truth.iter().flatten().count() as f64;
+    let (mut change, mut count) = (0.0, 0_usize);
+    for (pair, true_pair) in frames.windows(2).zip(truth.windows(2)) {
+        for pixel in 0..pair[0].len() {
+            if (true_pair[1][pixel] - true_pair[0][pixel]).abs() < 0.01 * mean {
+                change += (pair[1][pixel] - pair[0][pixel]).abs();
+                count += 1;
+            }
+        }
+    }
+    change / (count.max(1) as f64 * mean)
+}
+
+fn luminances(pixels: impl Iterator<Item = [f64; 3]>) -> Vec<f64> {
+    pixels.map(|[red, green, blue]| 0.2126 * red + 0.7152 * green + 0.0722 * blue).collect()
+}
+
+/// Steps of the light of `animated` and of the camera by half a pixel; the truth takes the same samples in every frame, so that its noise
+/// stands still too.
+#[test]
+fn what_stands_still_hardly_flickers() {
+    let session = Session::open();
+    let mut tracer = Tracer::new(&session);
+    let size = [64, 48];
+    for moves in ["light", "camera"] {
+        let mut scene = builtin(if moves == "light" { "animated" } else { "cornell-point" });
+        let settings = hybrid(Preset::Default, &[("lights.resolution", "256")]);
+        let mut renderer = session.renderer(&settings);
+        let (mut frames, mut truth) = (Vec::new(), Vec::new());
+        for step in 0..4 {
+            if moves == "light" {
+                scene.set_frame(step);
+            }
+            let mut camera = scene.camera_view(None).expect("its camera");
+            if moves == "camera" {
+                // A pixel is about 1/60 rad wide.
+                camera.world *= DAffine3::from_rotation_y(f64::from(step) * 0.5 / 60.0 * 0.9);
+            }
+            let frame = renderer.render(&scene, &request(size, camera.clone(), &INDIRECT)).expect("a frame");
+            let image = &frame.slots[&Slot::Diffuse];
+            frames.push(luminances(image.pixels.iter().map(|pixel| pixel.map(f64::from))));
+            let ask = Ask { bounces: Some(1), ..Ask::new(size, 32, camera) };
+            truth.push(luminances(tracer.trace(&scene, &ask).slot(Slot::Diffuse).iter().map(|pixel| pixel.to_array())));
+        }
+        let [found, least] = [flicker(&frames, &truth), flicker(&truth, &truth)];
+        println!("{moves}: flicker {:.3} %, of the truth {:.3} %", 100.0 * found, 100.0 * least);
+        assert!(found < 0.02, "{moves}: {found}");
+    }
+}
