@@ -1,7 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "geometry/material_textures.glsl"
-#include "geometry/normals.glsl"
+#include "geometry/normal_map.glsl"
 #include "gbuffer/targets.glsl"
 
 // One fragment of a textured primitive: its normals with the normal map's on top, and its scattering lobes from the material's factors
@@ -18,20 +18,6 @@ layout(location = 2) flat in uint instance_index;
 layout(location = 3) in vec4 vertex_tangent;
 layout(location = 4) in vec4 texcoord_sets;
 
-// The normal map's vector n' = t.x·T + t.y·B + t.z·N with B = w·(N×T) (glTF 2.0; MikkTSpace). A mirroring transform turns the
-// cross product round, which the tangent's sign makes good. Without tangents there is no frame to read the map in.
-vec3 mapped_normal(Instance instance, Material material, Normals normals, Texcoords texcoords) {
-    if (!has_texture(material, MATERIAL_NORMAL_TEXTURE) || (instance.flags & INSTANCE_HAS_TANGENTS) == 0u) {
-        return normals.vertex;
-    }
-    vec3 texel = sample_texture(normal_texture, load_texture_use(material_textures, instance.material, USE_NORMAL), texcoords).xyz * 2.0 - 1.0;
-    texel.xy *= material.normal_scale;
-    float mirror = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
-    vec3 tangent = normalize_or(transform_direction(instance, vertex_tangent.xyz), vec3(0.0));
-    vec3 bitangent = cross(normals.vertex, tangent) * (vertex_tangent.w * mirror);
-    return normalize_or(texel.x * tangent + texel.y * bitangent + texel.z * normals.vertex, normals.vertex);
-}
-
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = load_instance(instances, instance_index);
@@ -46,7 +32,7 @@ void main() {
     Lobes lobes = lobes_of_material(material, point);
 
     Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
-    vec3 shading_normal = towards_viewer(mapped_normal(instance, material, normals, texcoords), normals);
+    vec3 shading_normal = towards_viewer(mapped_normal(instance, material, normals, vertex_tangent, texcoords), normals);
     bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);
 
     surface = pack_surface(shading_normal, normals.geometric, lobes);

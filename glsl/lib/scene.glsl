@@ -97,7 +97,7 @@ struct Material {
     float normal_scale;
     float alpha_cutoff;     // below 0: opaque
     uint flags;
-    uvec2 reserved;         // fills the last of five vec4
+    uvec2 medium;           // what it bounds, packed: medium_of()
 };
 
 Material load_material(usamplerBuffer materials, uint index) {
@@ -109,7 +109,20 @@ Material load_material(usamplerBuffer materials, uint index) {
     uvec4 last = texelFetch(materials, first + 4);
     return Material(
         base_color, emissive.xyz, emissive.w, specular.xyz, specular.w, factors.x, factors.y, factors.z, factors.w,
-        uintBitsToFloat(last.x), last.y, uvec2(0u));
+        uintBitsToFloat(last.x), last.y, last.zw);
+}
+
+// What lies behind a surface that bounds a closed solid (KHR_materials_volume); a thin wall has nothing behind it.
+struct Medium {
+    bool is_closed;
+    vec3 absorption;  // 1/m
+};
+
+// Three positive floats without their ten lowest bits, and one bit for the kind.
+Medium medium_of(Material material) {
+    uvec2 bits = material.medium;
+    uvec3 channels = uvec3(bits.x & 0x1FFFFFu, bits.x >> 21 | (bits.y & 0x3FFu) << 11, bits.y >> 10 & 0x1FFFFFu);
+    return Medium(bits.y >> 31 != 0u, uintBitsToFloat(channels << 10));
 }
 
 // How a material reads one texture: uv' = (u_row·(uv,1), v_row·(uv,1)) in `layer` of the array that is bound for it.

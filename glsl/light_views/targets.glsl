@@ -10,27 +10,12 @@
 #include "lib/brdf.glsl"
 #include "lib/lights.glsl"
 #include "lib/octahedral.glsl"
-#include "lib/solid_angle.glsl"
+#include "light_views/flux.glsl"
 
 layout(set = 0, binding = 6) uniform usamplerBuffer lights;
 
 layout(location = 0) out uint light_normal;  // r32ui: the triangle's normal on the light's side, pack_direction()
 layout(location = 1) out vec4 light_flux;    // rgba32f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
-
-// W before any surface reflects it. `texel` and `depth` as gl_FragCoord has them.
-vec3 incident_flux(Light light, LightView view, vec2 texel, float depth) {
-    vec2 tangent = tangent_of_texel(view, texel);
-    if (any(lessThan(tangent, view.lit_low)) || any(greaterThanEqual(tangent, view.lit_high))) {
-        return vec3(0.0);
-    }
-    if (is_orthographic(view)) {
-        return light.intensity * (view.tangent_step * view.tangent_step);
-    }
-    vec3 ray = ray_of_tangent(view, tangent);
-    float stretch = length(ray);
-    float window = range_window(stretch * view.near / depth, light.range);
-    return radiant_intensity(light, ray / stretch) * (window * solid_angle_of_texel(tangent, view.tangent_step));
-}
 
 vec4 reflected_flux(Light light, LightView view, vec4 fragment, vec3 normal, Lobes lobes, float transmission) {
     vec3 incident = incident_flux(light, view, fragment.xy, fragment.z);

@@ -7,7 +7,9 @@ layout(set = 0, binding = 5) uniform usamplerBuffer views;
 
 layout(push_constant, scalar) uniform Push { uint view_index; } push;
 
+// Precise: every program computes the same bits, so that one may draw where the depth equals that of another.
 vec4 clip_position(vec3 position, uint instance) {
-    vec3 position_rs = vec4(position, 1.0) * load_transform(instances, instance);
-    return load_view_projection(views, push.view_index) * vec4(position_rs, 1.0);
+    precise vec3 position_rs = vec4(position, 1.0) * load_transform(instances, instance);
+    precise vec4 clip = load_view_projection(views, push.view_index) * vec4(position_rs, 1.0);
+    return clip;
 }

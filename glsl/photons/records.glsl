@@ -13,7 +13,9 @@
 #include "lib/octahedral.glsl"
 
 const uint HIT_NONE = 0xFFFFFFFFu;
+#ifndef LIB_BVH
 const uint NO_TRIANGLE = 0xFFFFFFFFu;
+#endif
 
 const uint PHOTON_INSIDE = 1u;  // the ray runs inside a closed transmissive body
 

@@ -30,7 +30,6 @@ void main() {
     Instance instance = instances[i];
     instance.reserved = uvec3(0u);
     Material material = materials[i];
-    material.reserved = uvec2(0u);
     MaterialTextures textures = uses[i];
     LightView view = views[i];
     view.view_projection = mat4(0.0);

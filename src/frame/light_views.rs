@@ -53,13 +53,17 @@ pub(crate) fn light_views(
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
         flux: graph.image("light_views.flux", vk::Format::R32G32B32A32_SFLOAT, size),
     });
-    let draw_views: Vec<DrawView> =
-        (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect();
+    let draw_views = draw_views(set);
     match reflective {
         Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
         None => draw_depth(graph, data, geometry, &made, &draw_views),
     }
     (made, reflective)
+}
+
+/// All views as draws see them.
+pub(crate) fn draw_views(set: &LightSet) -> Vec<DrawView> {
+    (0_u32..).zip(&set.atlas.views).map(|(index, view)| draw_view(index, view)).collect()
 }
 
 fn draw_view(index: u32, view: &super::view_layout::LaidOutView) -> DrawView {

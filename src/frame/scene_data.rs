@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::textures::{MaterialTextureSets, TextureArrays, slots_of};
 use crate::graph::hash_of;
-use crate::scene::{Alpha, Bounds, Instance, Material, Primitive, Scene};
+use crate::scene::{Alpha, Bounds, Instance, Material, Primitive, Scene, has_specular_lobe};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, Pipelines, VulkanError, buffer_with};
 
@@ -42,6 +42,8 @@ struct Place {
     index_count: u32,
     vertex_offset: i32,
     bounds: [[f32; 3]; 2],
+    /// In object space, m².
+    area: f64,
 }
 
 /// One instance as the host needs it to draw: what to draw, with which material, and where it is.
@@ -56,6 +58,8 @@ pub(crate) struct DrawnInstance {
     /// Which kinds, as the shaders' bits.
     pub(crate) texture_kinds: u32,
     pub(crate) masked: bool,
+    /// The material reflects or transmits specularly.
+    pub(crate) specular: bool,
     /// Corners of its box in render space, for culling.
     pub(crate) center_rs: [f32; 3],
     pub(crate) half_axes_rs: [[f32; 3]; 3],
@@ -67,6 +71,8 @@ pub(crate) struct SceneData {
     pub(crate) origin: DVec3,
     /// Half the diagonal of the scene's bounds when it was first seen, metres; the length that tolerances scale with.
     pub(crate) radius: f64,
+    /// Of all surfaces, m².
+    pub(crate) area: f64,
     pub(crate) meshes: MeshData,
     mesh_key: u64,
     pub(crate) instances: Arc<Buffer>,
@@ -100,6 +106,7 @@ impl SceneData {
         }
         if data.instance_key != instance_key {
             (data.instances, data.drawn) = upload_instances(device, scene, &data.meshes, data.origin)?;
+            data.area = surface_area(scene, &data.meshes);
             data.instance_key = instance_key;
         }
         Ok(data)
@@ -119,6 +126,7 @@ impl SceneData {
             identity: scene.identity(),
             origin: bounds.center(),
             radius: bounds.radius().max(1e-9),
+            area: surface_area(scene, &meshes),
             meshes,
             mesh_key,
             instances,
@@ -162,7 +170,9 @@ impl MeshData {
         for mesh in scene.meshes() {
             let place = |primitive: &Primitive| {
                 let index_count = narrow(primitive.indices.len())?;
-                let place = Place { first_index, index_count, vertex_offset, bounds: box_of(&primitive.positions) };
+                let bounds = box_of(&primitive.positions);
+                let area = area_of(primitive, DMat3::IDENTITY);
+                let place = Place { first_index, index_count, vertex_offset, bounds, area };
                 first_index = first_index.checked_add(index_count).ok_or_else(too_many)?;
                 vertex_offset = i32::try_from(primitive.positions.len())
                     .ok()
@@ -280,6 +290,28 @@ fn box_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
     if positions.is_empty() { [[0.0; 3]; 2] } else { bounds }
 }
 
+/// The area of a primitive that is moved by a linear map, m².
+fn area_of(primitive: &Primitive, linear: DMat3) -> f64 {
+    let corner = |index: u32| linear * DVec3::from(primitive.positions[index as usize].map(f64::from));
+    let triangles = primitive.indices.chunks_exact(3).map(|indices| [0, 1, 2].map(|place| corner(indices[place])));
+    triangles.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
+}
+
+/// The area of all instances, m². Only those whose transform is no similarity are measured triangle by triangle.
+fn surface_area(scene: &Scene, meshes: &MeshData) -> f64 {
+    let area = |instance: &Instance| {
+        let linear = instance.world.matrix3;
+        let scale2 = linear.x_axis.length_squared();
+        let stretch = (linear.transpose() * linear - DMat3::from_diagonal(DVec3::splat(scale2))).to_cols_array();
+        if stretch.into_iter().all(|entry| entry.abs() <= 1e-6 * scale2) {
+            scale2 * meshes.places[instance.mesh.0][instance.primitive].area
+        } else {
+            area_of(&scene.meshes()[instance.mesh.0].primitives[instance.primitive], linear)
+        }
+    };
+    scene.instances().iter().map(area).sum()
+}
+
 fn upload_instances(
     device: &Arc<Device>,
     scene: &Scene,
@@ -355,6 +387,7 @@ fn drawn_instance(
         textured: material.textures().next().is_some(),
         texture_kinds: texture_kinds(material),
         masked: material.alpha != Alpha::Opaque,
+        specular: has_specular_lobe(material),
         center_rs: to_render.transform_point3((low + high) * 0.5).as_vec3().to_array(),
         half_axes_rs: axes.map(|axis| axis.as_vec3().to_array()),
     }
@@ -395,8 +428,15 @@ pub(crate) fn material_record(material: &Material) -> types::Material {
             Alpha::Mask { cutoff } => cutoff,
         },
         flags: u32::from(material.double_sided) | u32::from(material.unlit) << 1 | texture_kinds(material),
-        reserved: [0; 2],
+        medium: packed_medium(material),
     }
+}
+
+/// As `medium_of` of glsl/lib/scene.glsl takes it apart.
+fn packed_medium(material: &Material) -> [u32; 2] {
+    let [red, green, blue, closed] = material.medium();
+    let [red, green, blue] = [red, green, blue].map(|absorption| absorption.to_bits() >> 10 & 0x1F_FFFF);
+    [red | green << 21, green >> 11 | blue << 10 | u32::from(closed > 0.0) << 31]
 }
 
 /// The bits of glsl/lib/scene.glsl.

@@ -24,6 +24,8 @@ mod path_probe;
 mod path_repeats;
 mod path_robustness;
 mod path_weights;
+mod photons_emit;
+mod photons_probe;
 mod probe;
 mod raster;
 mod rays;

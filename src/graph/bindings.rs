@@ -106,7 +106,11 @@ impl<T> BufferRef<T> {
         WriteBuffer(self.access(BufferUse::Write), PhantomData)
     }
 
-    #[allow(dead_code, reason = "lists of the methods to come")]
+    /// Some elements are written; the others keep what they held.
+    pub(crate) fn modify(self) -> WriteBuffer<T> {
+        WriteBuffer(self.access(BufferUse::Modify), PhantomData)
+    }
+
     pub(crate) fn read_write(self) -> ReadWriteBuffer<T> {
         ReadWriteBuffer(self.access(BufferUse::Modify), PhantomData)
     }

@@ -208,7 +208,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Reports the word at `index` of `buffer` after the pass as a work counter.
-    #[allow(dead_code, reason = "list nodes and photons of the methods to come")]
     pub(crate) fn count(mut self, name: &str, buffer: BufferRef<u32>, index: usize) -> Self {
         self.graph.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
         self.pass.counters.push(Counter { name: name.to_owned(), buffer: buffer.id, offset: index as u64 * 4 });
@@ -237,6 +236,24 @@ impl<'g, 's> PassBuilder<'g, 's> {
                 self
             }
         }
+    }
+
+    /// The next colour output, of which only what the pass draws will be read: the rest is neither kept nor cleared.
+    pub(crate) fn color_fresh(mut self, image: ImageRef) -> Self {
+        let access = image.access(ImageUse::Color { keep: false });
+        self.pass.others.push(access.clone());
+        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().colors.push(Some((access, None)));
+        self
+    }
+
+    /// The depth attachment, only tested against.
+    pub(crate) fn depth_test(mut self, image: ImageRef) -> Self {
+        let access = image.access(ImageUse::DepthTest);
+        self.pass.others.push(access.clone());
+        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().depth = Some((access, None));
+        self
     }
 
     /// The depth attachment, written; `clear` as for colours. Comes before [`PassBuilder::stencil`].
@@ -302,7 +319,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Runs as many groups as the three words at `index` of `arguments` say.
-    #[allow(dead_code, reason = "photon and list passes of the methods to come")]
     pub(crate) fn threads_indirect(mut self, arguments: BufferRef<u32>, index: usize) {
         self.pass.others.push(arguments.access(BufferUse::Indirect));
         self.graph.resources[arguments.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;

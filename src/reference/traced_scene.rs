@@ -147,7 +147,7 @@ impl TracedScene {
         let bvh = Bvh::build(&bvh_triangles);
         let texels = Texels::new(scene.textures())?;
         let materials: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
-        let media: Vec<[f32; 4]> = scene.materials().iter().map(medium).collect();
+        let media: Vec<[f32; 4]> = scene.materials().iter().map(Material::medium).collect();
         let uses: Vec<types::MaterialTextures> = scene
             .materials()
             .iter()
@@ -271,19 +271,6 @@ fn cutout(material: &Material, textures: &[Texture], facts: &Facts) -> Cutout {
         (_, true) => Cutout::Nothing,
         _ => Cutout::PerPoint,
     }
-}
-
-/// Absorption in 1/m, and 1 where the surface bounds a medium (KHR_materials_volume: x = −ln(color)/distance).
-fn medium(material: &Material) -> [f32; 4] {
-    let bounds_medium = material.transmission > 0.0 && material.thickness > 0.0;
-    if !bounds_medium {
-        return [0.0; 4];
-    }
-    // An opaque medium absorbs within a thousandth of its distance.
-    let absorption =
-        |color: f32| (-color.max(1e-30).ln() / material.attenuation_distance).min(1e3 / material.attenuation_distance);
-    let [red, green, blue] = material.attenuation_color.map(absorption).map(|value| value.max(0.0));
-    [red, green, blue, 1.0]
 }
 
 fn flatten(scene: &Scene, origin: DVec3, facts: &Facts) -> Result<(Vec<TracedTriangle>, Corners), VulkanError> {

@@ -90,7 +90,8 @@ fn has_diffuse_lobe(material: &Material) -> bool {
     !material.unlit && !metal && !glass
 }
 
-fn has_specular_lobe(material: &Material) -> bool {
+/// Whether the material reflects or transmits specularly anywhere.
+pub(crate) fn has_specular_lobe(material: &Material) -> bool {
     let colored = material.specular_color.iter().any(|&channel| channel > 0.0);
     let dielectric = material.specular > 0.0 && material.ior != 1.0 && colored;
     !material.unlit && (material.metallic > 0.0 || dielectric || transmits(material))

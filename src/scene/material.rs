@@ -90,6 +90,20 @@ impl Material {
         !self.unlit && self.emissive.iter().any(|&channel| channel > 0.0)
     }
 
+    /// Absorption in 1/m, and 1 where the surface bounds a medium (KHR_materials_volume: x = −ln(color)/distance).
+    pub(crate) fn medium(&self) -> [f32; 4] {
+        let bounds_medium = self.transmission > 0.0 && self.thickness > 0.0;
+        if !bounds_medium {
+            return [0.0; 4];
+        }
+        // An opaque medium absorbs within a thousandth of its distance.
+        let absorption = |color: f32| {
+            (-color.max(1e-30).ln() / self.attenuation_distance).min(1e3 / self.attenuation_distance).max(0.0)
+        };
+        let [red, green, blue] = self.attenuation_color.map(absorption);
+        [red, green, blue, 1.0]
+    }
+
     /// Says which number is out of the range that its field describes so far that shading would break.
     pub(super) fn fault(&self) -> Option<String> {
         let numbers = [

@@ -52,6 +52,7 @@ pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub use world::{Node, Revisions, Scene};
 
 pub(crate) use digest::Digest;
+pub(crate) use facts::has_specular_lobe;
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $id:ident,)*) => {$(

@@ -1,6 +1,15 @@
 //! `photons`: caustics by photons that leave the specular surfaces which lights see (Quyen 2014, section 3.3).
+//!
+//! The light views tell where light first meets a specular surface, and how much. Photons are drawn from there by flux, reflected or
+//! refracted, traced through the scene, and land on diffuse surfaces; at specular ones they go on, up to the number of bounces. All counts
+//! stay on the device.
 
+mod bvh;
+mod choose;
+mod emit;
+mod land;
 pub(crate) mod records;
+mod views;
 
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
@@ -8,10 +17,15 @@ use crate::frame::light_set::LightSet;
 use crate::frame::light_views::LightViews;
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
-use crate::graph::bindings::ImageRef;
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
-use crate::renderer::PhotonSettings;
+use crate::renderer::{PhotonSettings, PhotonTracing};
 use crate::scene::Facts;
+use emit::Arrivals;
+use records::{LandedPhotons, PhotonRays};
+
+/// What every device lets a kernel see of one buffer, bytes.
+const LARGEST_BUFFER: u32 = 1 << 27;
 
 /// What the method takes.
 pub(crate) struct PhotonInputs<'a> {
@@ -28,7 +42,59 @@ pub(crate) struct PhotonInputs<'a> {
 
 /// Declares the method's passes in the order in which they run; returns the slot.
 pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
-    let _ = inputs;
-    graph.skip("caustics/photons", "not built yet");
+    let _landed = trace_all(graph, inputs);
     None
+}
+
+/// Photons where they landed, and what led there.
+pub(crate) struct TracedPhotons {
+    pub(crate) landed: LandedPhotons,
+    /// What the device chose (glsl/photons/choice.glsl).
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) choice: BufferRef<u32>,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) arrival_counts: BufferRef<u32>,
+    /// Photons at the last specular surfaces but none: those of the light views if there is one bounce.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) arrivals: BufferRef<[u32; 4]>,
+    /// The rays of the last stage.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) rays: PhotonRays,
+}
+
+/// Photons from the specular surfaces that lights see to where they land. At most `max`, and as many as fit into one buffer if all land at
+/// every bounce.
+pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> TracedPhotons {
+    let settings = inputs.settings;
+    let stages = settings.bounces.max(1) as usize;
+    let capacity = settings.max.min(LARGEST_BUFFER / 48).min(LARGEST_BUFFER / 32 / settings.bounces.max(1)).max(1);
+    let views = views::specular_views(graph, inputs);
+    let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
+    let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
+    let arrivals = Arrivals::declare(graph, capacity);
+    let scene = inputs.traced.map(|traced| (traced, traced.import(graph)));
+    let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
+    emit::emit(graph, inputs, &views, &choice, arrivals);
+    let all_rays = PhotonRays::declare(graph, 0, capacity);
+    let mut rays = all_rays;
+    for stage in 0..stages {
+        rays = PhotonRays { stage, ..all_rays };
+        emit::scatter(graph, inputs, &choice, arrivals, &rays);
+        match (settings.trace, through) {
+            (PhotonTracing::Bvh, Some((traced, bindings))) => {
+                bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts);
+            }
+            (PhotonTracing::Bvh | PhotonTracing::Lines | PhotonTracing::March, _) => {
+                graph.skip(&format!("caustics/photons/trace.{stage}"), "no scene to trace photons through");
+            }
+        }
+        land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));
+    }
+    TracedPhotons {
+        landed,
+        choice: choice.choice,
+        arrival_counts: choice.arrival_counts,
+        arrivals: arrivals.arrivals,
+        rays,
+    }
 }

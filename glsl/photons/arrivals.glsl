@@ -1,0 +1,19 @@
+// Photons that reached a surface with specular lobes and wait to be sent on, in two lists:
+//
+//   arrivals   3 texels   as a ray of photons/records.glsl whose origin is the point that it reached, and `travelled` the way so far
+//   surfaces   2 texels   shading normal | geometric normal | √f0 | √transmission           (photons/surface_texel.glsl)
+//                         f90, roughness | relative index beyond the surface, 1: a thin wall | gap | unused
+//
+// Gap: metres that a ray starts away from the surface, so that rounding does not let it meet that again.
+#ifndef PHOTONS_ARRIVALS
+#define PHOTONS_ARRIVALS
+
+#include "photons/records.glsl"
+
+// Of a point whose position was computed in floats: 256 units in the last place, of its own size or of a tenth of the scene's.
+float gap_at(vec3 position_rs, float radius) {
+    vec3 size = abs(position_rs);
+    return exp2(-16.0) * max(0.1 * radius, max(size.x, max(size.y, size.z)));
+}
+
+#endif

@@ -1,0 +1,19 @@
+// What the device decides about a frame's photons, in words:
+//
+//   0 to 2   arguments of an indirect dispatch over the blocks of the chosen level, 8x8 a group
+//   3        the level
+//   4        log₂ of the photons to a side of a texel: 0 unless the level is 0
+//   5        photons that are sent out
+//   6 to 8   arguments of an indirect dispatch over them, 64 a group
+//   9        blocks listed so far
+#ifndef PHOTONS_CHOICE
+#define PHOTONS_CHOICE
+
+const uint CHOICE_LEVEL = 3u;
+const uint CHOICE_SPLIT = 4u;
+const uint CHOICE_PHOTONS = 5u;
+const uint CHOICE_EMIT = 6u;
+const uint CHOICE_LISTED = 9u;
+const uint CHOICE_WORDS = 10u;
+
+#endif

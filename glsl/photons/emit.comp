@@ -1,0 +1,146 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/lights.glsl"
+#include "light_views/flux.glsl"
+#include "photons/arrivals.glsl"
+#include "photons/choice.glsl"
+#include "photons/medium.glsl"
+#include "photons/random.glsl"
+#include "photons/surface_texel.glsl"
+
+// One invocation makes one photon where light first meets a specular surface. It stands for the flux W that its block of the mask's
+// pyramid holds, and sits on one of the block's texels, drawn with probability w/W by the flux w of that: down the pyramid, one of four
+// blocks at a time. It carries
+//
+//   Φ = Φ_texel · W/w / 4ᵏ        [W], Φ_texel = I(ω)·Δω (light_views/flux.glsl)
+//
+// so that the photons' flux adds up to what all specular surfaces receive, silhouettes included: the paper's rule, that all four texels
+// below must be specular (Quyen 2014, section 3.3.1.1), loses them. Of 4ᵏ photons to a texel each has its cell of it.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform sampler2D mask;
+layout(set = 0, binding = 1) uniform usamplerBuffer levels;
+layout(set = 0, binding = 2) uniform usamplerBuffer pyramid;
+layout(set = 0, binding = 3) uniform usamplerBuffer choice;
+layout(set = 0, binding = 4) uniform usamplerBuffer blocks;
+layout(set = 0, binding = 5) uniform usamplerBuffer views;
+layout(set = 0, binding = 6) uniform usamplerBuffer lights;
+layout(set = 0, binding = 7) uniform usamplerBuffer tile_views;  // the view of each square of 16x16 texels
+layout(set = 0, binding = 8) uniform sampler2D light_depth;
+layout(set = 0, binding = 9) uniform usampler2D specular_surface;
+layout(set = 0, binding = 10) uniform usampler2D specular_layer;
+layout(set = 0, binding = 11) uniform usamplerBuffer materials;
+layout(set = 0, binding = 12) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
+layout(set = 0, binding = 13) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint tiles_per_row;
+    float radius;  // of the scene, m
+} push;
+
+#include "photons/pyramid.glsl"
+
+float flux_of_block(uint number, ivec2 block) {
+    Level level = load_level(number);
+    if (!holds(level, block)) {
+        return 0.0;
+    }
+    return number == 0u ? texelFetch(mask, block, 0).x : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x);
+}
+
+// Where a photon sits, and W/w.
+struct Place {
+    ivec2 texel;
+    float weight;
+};
+
+Place draw_texel(uint level, ivec2 block, float random) {
+    float whole = flux_of_block(level, block);
+    float part = whole;
+    [[dont_unroll]] while (level > 0u) {
+        --level;
+        block *= 2;
+        vec4 quad = vec4(
+            flux_of_block(level, block), flux_of_block(level, block + ivec2(1, 0)),
+            flux_of_block(level, block + ivec2(0, 1)), flux_of_block(level, block + ivec2(1, 1)));
+        float rest = random * ((quad.x + quad.y) + (quad.z + quad.w));
+        // The last block that is not empty takes what rounding leaves.
+        int chosen = 0;
+        part = 0.0;
+        [[dont_unroll]] for (int child = 0; child < 4; ++child) {
+            float flux = quad[child];
+            bool goes_on = rest >= part && part > 0.0;
+            if (flux > 0.0 && (part <= 0.0 || goes_on)) {
+                rest -= part;
+                part = flux;
+                chosen = child;
+            }
+        }
+        random = clamp(rest / part, 0.0, 0.99999994);
+        block += ivec2(chosen & 1, chosen >> 1);
+    }
+    return Place(block, whole / part);
+}
+
+// Where the light's ray through a tangent coordinate meets the plane of what the texel's middle sees, at most four texels off.
+vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, vec3 normal) {
+    vec3 seen = position_of_texel(view, middle, depth);
+    vec3 origin = view.origin_rs;
+    if (is_orthographic(view)) {
+        origin += tangent.x * view.right + tangent.y * view.down;
+    }
+    vec3 ray = ray_of_tangent(view, tangent);
+    float slope = dot(normal, ray);
+    float z = dot(normal, seen - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
+    float middle_z = linear_depth(view, depth);
+    float reach = 4.0 * view.tangent_step * (is_orthographic(view) ? 1.0 : middle_z);
+    return origin + ray * clamp(z, middle_z - reach, middle_z + reach);
+}
+
+void main() {
+    uint photon = gl_GlobalInvocationID.x;
+    if (photon >= texelFetch(choice, int(CHOICE_PHOTONS)).x) {
+        return;
+    }
+    uint level = texelFetch(choice, int(CHOICE_LEVEL)).x;
+    uint split = texelFetch(choice, int(CHOICE_SPLIT)).x;
+    uint packed_block = texelFetch(blocks, int(photon >> (2u * split))).x;
+    uvec2 block = uvec2(packed_block & 0xFFFFu, packed_block >> 16);
+    uint cell = photon & ((1u << (2u * split)) - 1u);
+    uint number = morton_code(block) << (2u * split) | cell;
+    vec4 random = photon_random(number, 0u);
+    Place place = draw_texel(level, ivec2(block), random.x);
+
+    ivec2 texel = place.texel;
+    LightView view = load_view(views, texelFetch(tile_views, (texel.y >> 4) * int(push.tiles_per_row) + (texel.x >> 4)).x);
+    float depth = texelFetch(light_depth, texel, 0).x;
+    uvec4 surface = texelFetch(specular_surface, texel, 0);
+    uvec2 layer = texelFetch(specular_layer, texel, 0).xy;
+    vec2 middle = tangent_of_texel(view, vec2(texel) + 0.5);
+    vec2 in_texel = (vec2(morton_place(cell)) + 0.5) * exp2(-float(split)) - 0.5;
+    vec2 tangent = middle + in_texel * view.tangent_step;
+    vec3 position = position_on_texel(view, middle, tangent, depth, unpack_direction(surface.y));
+
+    // A directional light counts as at the scene's radius from what it lights.
+    vec3 ray = ray_of_tangent(view, tangent);
+    float texel_width = view.tangent_step * (is_orthographic(view) ? 1.0 : linear_depth(view, depth));
+    float lit_way = is_orthographic(view) ? push.radius : distance(position, view.origin_rs);
+    vec3 flux = incident_flux(load_light(lights, view.light), view, vec2(texel) + 0.5, depth);
+    Material material = load_material(materials, layer.y & ~SURFACE_FRONT);
+    bool front = (layer.y & SURFACE_FRONT) != 0u;
+    flux *= transmittance_behind(material, front, length(ray_of_tangent(view, middle)) * linear_depth(view, depth));
+    flux *= place.weight * exp2(-2.0 * float(split));
+
+    bool is_closed = medium_of(material).is_closed;
+    bool refracts = is_closed && material.ior > 0.0 && surface.w != 0u;
+    float relative_ior = !refracts ? 1.0 : front ? material.ior : 1.0 / material.ior;
+    uint bits = is_closed && !front ? PHOTON_INSIDE : 0u;
+    arrivals[3u * photon] = uvec4(floatBitsToUint(position), floatBitsToUint(lit_way));
+    arrivals[3u * photon + 1u] = uvec4(floatBitsToUint(normalize(ray)), bits);
+    arrivals[3u * photon + 2u] = uvec4(floatBitsToUint(flux), number);
+    // Views round the corners of what they draw to 1/256 of a texel.
+    float gap = gap_at(position, push.radius) + texel_width / 64.0;
+    surfaces[2u * photon] = surface;
+    surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), 0u);
+}

@@ -1,0 +1,101 @@
+// What happens where a photon meets a surface: it lands if there is a diffuse lobe, and goes on if there are specular ones. Both take
+// the whole flux that arrives: what each sends out is its own factor's business.
+//
+// The disc that a landed photon is spread over has the radius h = C√(A/N), C = C₀/√p, p = cosθ/d² (Quyen 2014, section 3.3.2.3), with d
+// over the scene's radius R so that C₀ has no unit:
+//
+//   h = C₀·√(A/N) · d/(R·√cosθ) [m], at most R/4
+//
+// A the area of the scene, N the photons sent out, d the way from the light, θ the angle of incidence.
+
+#include "photons/append.glsl"
+#include "photons/arrivals.glsl"
+#include "photons/choice.glsl"
+#include "photons/medium.glsl"
+#include "photons/surface_texel.glsl"
+#include "lib/brdf.glsl"
+
+layout(set = 0, binding = 0) uniform usamplerBuffer rays;
+layout(set = 0, binding = 1) uniform usamplerBuffer hits;
+layout(set = 0, binding = 2) uniform usamplerBuffer choice;
+layout(set = 0, binding = 3) uniform usamplerBuffer materials;
+layout(set = 0, binding = 4) writeonly buffer PhotonBlock { uvec4 photons[]; };
+layout(set = 0, binding = 5) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
+layout(set = 0, binding = 6) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
+layout(set = 0, binding = 7) buffer CountBlock { uint counts[]; };
+layout(set = 0, binding = 8) buffer ArrivalCountBlock { uint arrival_counts[]; };
+
+layout(push_constant, scalar) uniform Push {
+    vec3 shift;          // from render space to that of the traced scene
+    uint stage;
+    uint goes_on;        // 0: no surface sends photons on from here
+    uint landed_stage;
+    uint capacity;       // of the lists of arrivals
+    uint landed_capacity;
+    float radius;        // of the scene, m
+    float disc_scale;    // C₀·√A/R
+} push;
+
+// Where a photon is, and what it met there.
+struct Landing {
+    PhotonRay photon;   // its flux and way at arrival, its origin the point of arrival
+    vec3 normal;        // geometric, on the arriving side
+    vec3 shading_normal;
+    bool front;
+    Material material;
+};
+
+Landing arrive(uint index, uvec4 hit) {
+    Landing landing;
+    landing.photon = load_photon_ray(rays, index);
+    vec3 face = unpack_direction(hit.y);
+    float distance = uintBitsToFloat(hit.x);
+    landing.front = dot(face, landing.photon.direction) < 0.0;
+    landing.material = load_material(materials, hit.z);
+    landing.normal = landing.front ? face : -face;
+    landing.shading_normal = landing.normal;
+    landing.photon.origin_rs += landing.photon.direction * distance;
+    landing.photon.travelled += distance;
+    landing.photon.flux *= transmittance_behind(landing.material, landing.front, distance);
+    return landing;
+}
+
+float disc_radius(Landing landing) {
+    float cosine = max(-dot(landing.normal, landing.photon.direction), 1e-3);
+    float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
+    return clamp(push.disc_scale * inversesqrt(emitted * cosine) * landing.photon.travelled, 1e-6 * push.radius, 0.25 * push.radius);
+}
+
+// All invocations of the subgroup come here; `met`: there is a surface.
+void land(bool met, Landing landing, MaterialPoint point) {
+    Material material = landing.material;
+    PhotonRay photon = landing.photon;
+    Lobes lobes = lobes_of_material(material, point);
+    bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
+    bool carries = met && max3(photon.flux) > 0.0;
+    bool lands = carries && max3(lobes.diffuse_albedo) > 0.0;
+    uint place;
+    APPEND(counts, push.landed_stage, lands, place)
+    if (lands && place < push.landed_capacity) {
+        photons[2u * place] = uvec4(floatBitsToUint(photon.origin_rs), pack_direction(landing.normal));
+        photons[2u * place + 1u] = uvec4(floatBitsToUint(photon.flux), floatBitsToUint(disc_radius(landing)));
+    }
+    if (push.goes_on == 0u) {
+        return;
+    }
+    vec3 transmission = unlit ? vec3(0.0) : point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
+    bool goes_on = carries && max(max3(lobes.f0), max(lobes.f90, max3(transmission))) > 0.0;
+    APPEND(arrival_counts, push.stage + 1u, goes_on, place)
+    if (goes_on && place < push.capacity) {
+        bool refracts = medium_of(material).is_closed && material.ior > 0.0 && max3(transmission) > 0.0;
+        float relative_ior = !refracts ? 1.0 : landing.front ? material.ior : 1.0 / material.ior;
+        arrivals[3u * place] = uvec4(floatBitsToUint(photon.origin_rs), floatBitsToUint(photon.travelled));
+        arrivals[3u * place + 1u] = uvec4(floatBitsToUint(photon.direction), photon.bits);
+        arrivals[3u * place + 2u] = uvec4(floatBitsToUint(photon.flux), photon.seed);
+        surfaces[2u * place] = uvec4(
+            pack_direction(landing.shading_normal), pack_direction(landing.normal), pack_root_color(lobes.f0), pack_root_color(transmission));
+        surfaces[2u * place + 1u] = uvec4(
+            packUnorm2x16(vec2(lobes.f90, lobes.roughness)), floatBitsToUint(relative_ior),
+            floatBitsToUint(gap_at(photon.origin_rs, push.radius)), 0u);
+    }
+}

@@ -1,0 +1,53 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/pixels.glsl"
+#include "photons/choice.glsl"
+
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+// Lists the blocks of the chosen level that are not empty: column and row in 16 bits each. One group looks at 8x8 of them, which the level
+// three above holds as one block.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform sampler2D mask;
+layout(set = 0, binding = 1) uniform usamplerBuffer levels;
+layout(set = 0, binding = 2) uniform usamplerBuffer pyramid;
+layout(set = 0, binding = 3) buffer ChoiceBlock { uint choice[]; };
+layout(set = 0, binding = 4) writeonly buffer BlockList { uint blocks[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint level_count;
+    uint capacity;
+} push;
+
+#include "photons/pyramid.glsl"
+
+bool is_taken(uint number, ivec2 block) {
+    Level level = load_level(number);
+    if (!holds(level, block)) {
+        return false;
+    }
+    return number == 0u ? texelFetch(mask, block, 0).x > 0.0 : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x) > 0.0;
+}
+
+void main() {
+    uint level = choice[CHOICE_LEVEL];
+    if (level + 3u < push.level_count && !is_taken(level + 3u, ivec2(gl_WorkGroupID.xy))) {
+        return;
+    }
+    uint lane = gl_LocalInvocationIndex & 7u;
+    uint part = gl_LocalInvocationIndex >> 3;
+    ivec2 block = ivec2(gl_WorkGroupID.xy * 8u + uvec2((part & 1u) * 4u + (lane & 3u), (part >> 1) * 2u + (lane >> 2)));
+    bool taken = is_taken(level, block);
+    uvec4 voters = subgroupBallot(taken);
+    uint first = 0u;
+    if (subgroupElect()) {
+        first = atomicAdd(choice[CHOICE_LISTED], subgroupBallotBitCount(voters));
+    }
+    uint place = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(voters);
+    if (taken && place < push.capacity) {
+        blocks[place] = uint(block.y) << 16 | uint(block.x);
+    }
+}

@@ -1,0 +1,27 @@
+// Sums of the mask over blocks of texels: level 0 is the mask itself, each further level sums 2x2 of the one before, up to a single block.
+// The including shader declares `sampler2D mask` and `usamplerBuffer levels`, one texel a level: width · height · its first word among the
+// sums · unused. `pyramid` holds the number of blocks of each level that are not empty, then the sums as bits of floats.
+#ifndef PHOTONS_PYRAMID
+#define PHOTONS_PYRAMID
+
+const uint PYRAMID_COUNTS = 32u;
+
+struct Level {
+    ivec2 size;
+    uint first;
+};
+
+Level load_level(uint level) {
+    uvec4 texel = texelFetch(levels, int(level));
+    return Level(ivec2(texel.xy), texel.z);
+}
+
+uint place_of_block(Level level, ivec2 block) {
+    return level.first + uint(block.y * level.size.x + block.x);
+}
+
+bool holds(Level level, ivec2 block) {
+    return all(lessThan(block, level.size));
+}
+
+#endif

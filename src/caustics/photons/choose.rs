@@ -1,0 +1,140 @@
+//! Where photons start, chosen on the device: a pyramid over the mask, and the level of it that gives as many photons as there may be.
+
+use ash::vk;
+
+use super::records::{COUNT_WORD, STAGE_WORDS};
+use super::views::SpecularViews;
+use crate::frame::light_set::LightSet;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::{Dependence, Graph};
+use crate::shaders::photons::{Choose, ChoosePush, List, ListPush, Pyramid, PyramidPush};
+
+/// Words of the pyramid before its sums (glsl/photons/pyramid.glsl).
+const PYRAMID_COUNTS: u32 = 32;
+/// Levels that one pass adds.
+const LEVELS_OF_PASS: usize = 4;
+
+/// Words of the choice (glsl/photons/choice.glsl).
+pub(crate) const CHOICE_PHOTONS: usize = 5;
+pub(crate) const CHOICE_EMIT: usize = 6;
+const CHOICE_LISTED: usize = 9;
+const CHOICE_WORDS: usize = 10;
+
+const WORDS: vk::Format = vk::Format::R32_UINT;
+
+/// What was chosen.
+#[derive(Clone)]
+pub(crate) struct Choice {
+    pub(crate) levels: TexelBuffer,
+    pub(crate) pyramid: BufferRef<u32>,
+    pub(crate) choice: BufferRef<u32>,
+    /// The blocks that get photons.
+    pub(crate) blocks: BufferRef<u32>,
+    /// Rays of each stage and, at the end, landed photons (super::records).
+    pub(crate) counts: BufferRef<u32>,
+    /// Likewise of photons that wait to be sent on, a stage for each bounce.
+    pub(crate) arrival_counts: BufferRef<u32>,
+}
+
+/// Width, height and first word of each level; the first level lies in the mask. The list goes on with empty levels as far as a pass asks.
+fn level_table(size: [u32; 2]) -> (Vec<[u32; 4]>, usize, usize) {
+    let mut levels = Vec::new();
+    let (mut level_size, mut words) = (size, PYRAMID_COUNTS);
+    loop {
+        let [width, height] = level_size;
+        let first = if levels.is_empty() { 0 } else { words };
+        words += if levels.is_empty() { 0 } else { width * height };
+        levels.push([width, height, first, 0]);
+        if level_size == [1, 1] {
+            break;
+        }
+        level_size = level_size.map(|side| side.div_ceil(2));
+    }
+    let count = levels.len();
+    levels.resize(PYRAMID_COUNTS as usize, [0; 4]);
+    (levels, count, words as usize)
+}
+
+/// Declares the passes; at most `most` photons in `stages` stages of rays.
+pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularViews, most: u32, stages: usize) -> Choice {
+    let size = set.atlas.size.map(|side| side.max(1));
+    let (table, level_count, words) = level_table(size);
+    let levels = graph.upload("photons.levels", &table, Dependence::LIGHTS).texels(vk::Format::R32G32B32A32_UINT);
+    let made = Choice {
+        levels,
+        pyramid: graph.buffer("photons.pyramid", words),
+        choice: graph.buffer("photons.choice", CHOICE_WORDS),
+        blocks: graph.buffer("photons.blocks", most as usize),
+        counts: graph.buffer("photons.counts", STAGE_WORDS * (stages + 1)),
+        arrival_counts: graph.buffer("photons.arrival_counts", STAGE_WORDS * (stages + 1)),
+    };
+
+    graph.fill_buffer("caustics/photons/mask/clear", made.pyramid, 0);
+    for level in (0..level_count.saturating_sub(1).max(1)).step_by(LEVELS_OF_PASS) {
+        let pass = Pyramid {
+            mask: views.mask.sampled(),
+            levels: made.levels.clone(),
+            pyramid: made.pyramid.read_write(),
+            push: PyramidPush { level: level as u32 },
+        };
+        let [width, height, ..] = table[level];
+        let name = format!("caustics/photons/mask/levels.{level}");
+        graph.pass(&name, pass).groups([width.div_ceil(16), height.div_ceil(16), 1]);
+    }
+
+    let pass = Choose {
+        levels: made.levels.clone(),
+        pyramid: made.pyramid.read(),
+        choice: made.choice.write(),
+        counts: made.counts.write(),
+        arrival_counts: made.arrival_counts.write(),
+        push: ChoosePush { level_count: level_count as u32, most, stage_count: stages as u32 + 1 },
+    };
+    graph
+        .pass("caustics/photons/choose/level", pass)
+        .count("specular texels", made.pyramid, 0)
+        .count("level", made.choice, 3)
+        .count("photons", made.choice, CHOICE_PHOTONS)
+        .groups([1, 1, 1]);
+
+    let pass = List {
+        mask: views.mask.sampled(),
+        levels: made.levels.clone(),
+        pyramid: made.pyramid.texels(WORDS),
+        choice: made.choice.read_write(),
+        blocks: made.blocks.write(),
+        push: ListPush { level_count: level_count as u32, capacity: most },
+    };
+    graph
+        .pass("caustics/photons/choose/list", pass)
+        .count("blocks", made.choice, CHOICE_LISTED)
+        .threads_indirect(made.choice, 0);
+    made
+}
+
+impl Choice {
+    /// The word that holds how many rays of a stage, or how many landed photons, there are.
+    pub(crate) fn count_word(stage: usize) -> usize {
+        STAGE_WORDS * stage + COUNT_WORD
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_end_at_one_block_and_do_not_overlap() {
+        for size in [[1, 1], [16, 16], [48, 1024], [512, 512], [2064, 528]] {
+            let (table, count, words) = level_table(size);
+            assert_eq!(table[0], [size[0], size[1], 0, 0]);
+            assert_eq!(table[count - 1][..2], [1, 1]);
+            let mut next = PYRAMID_COUNTS;
+            for level in &table[1..count] {
+                assert_eq!(level[2], next);
+                next += level[0] * level[1];
+            }
+            assert_eq!(words, next as usize);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Where photons meet surfaces: they land on diffuse ones, and go on from specular ones.
+
+use ash::vk;
+
+use super::PhotonInputs;
+use super::bvh::shift;
+use super::choose::Choice;
+use super::emit::Arrivals;
+use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
+use crate::graph::Graph;
+use crate::reference::traced_scene::{TracedBindings, TracedScene};
+use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
+
+const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
+const WORDS: vk::Format = vk::Format::R32_UINT;
+
+/// Lands the photons of a stage. `scene`: what they were traced through, where that was triangles.
+pub(crate) fn land(
+    graph: &mut Graph<'_>,
+    inputs: &PhotonInputs<'_>,
+    scene: Option<(&TracedScene, &TracedBindings)>,
+    choice: &Choice,
+    rays: &PhotonRays,
+    lists: (&LandedPhotons, Arrivals),
+) {
+    let (landed, next) = lists;
+    let data = inputs.data;
+    let name = format!("caustics/photons/land.{}", rays.stage);
+    // The first stage starts the list, the others add to it.
+    let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
+    let push = LandPush {
+        shift: scene.map_or([0.0; 3], |(traced, _)| shift(data, traced)),
+        stage: rays.stage as u32,
+        goes_on: u32::from(rays.stage + 1 < landed.stage),
+        landed_stage: landed.stage as u32,
+        capacity: rays.capacity,
+        landed_capacity: landed.capacity,
+        radius: data.radius as f32,
+        disc_scale: (inputs.settings.radius * data.area.sqrt() / data.radius) as f32,
+    };
+    let pass = match scene {
+        None => graph.pass(
+            &name,
+            Land {
+                rays: rays.rays.texels(RECORDS),
+                hits: rays.hits.texels(RECORDS),
+                choice: choice.choice.texels(WORDS),
+                materials: inputs.geometry.materials.clone(),
+                photons,
+                arrivals: next.arrivals.write(),
+                surfaces: next.surfaces.write(),
+                counts: choice.counts.read_write(),
+                arrival_counts: choice.arrival_counts.read_write(),
+                push,
+            },
+        ),
+        Some((traced, bindings)) => graph.pass(
+            &name,
+            LandTraced {
+                rays: rays.rays.texels(RECORDS),
+                hits: rays.hits.texels(RECORDS),
+                choice: choice.choice.texels(WORDS),
+                materials: inputs.geometry.materials.clone(),
+                photons,
+                arrivals: next.arrivals.write(),
+                surfaces: next.surfaces.write(),
+                counts: choice.counts.read_write(),
+                arrival_counts: choice.arrival_counts.read_write(),
+                triangles: bindings.triangles.clone(),
+                corner_colors: bindings.corner_colors.clone(),
+                corner_texcoords: bindings.corner_texcoords.clone(),
+                corner_tangents: bindings.corner_tangents.clone(),
+                material_textures: bindings.material_textures.clone(),
+                texture_table: bindings.texture_table.clone(),
+                texels: bindings.texels.clone(),
+                textures: traced.texture_kinds,
+                vertex_colors: u32::from(traced.facts.vertex_colors),
+                normal_maps: u32::from(traced.facts.normal_mapped),
+                push: LandTracedPush {
+                    shift: push.shift,
+                    stage: push.stage,
+                    goes_on: push.goes_on,
+                    landed_stage: push.landed_stage,
+                    capacity: push.capacity,
+                    landed_capacity: push.landed_capacity,
+                    radius: push.radius,
+                    disc_scale: push.disc_scale,
+                },
+            },
+        ),
+    };
+    pass.count("landed so far", choice.counts, Choice::count_word(landed.stage))
+        .threads_indirect(choice.counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
+}

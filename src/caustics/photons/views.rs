@@ -1,0 +1,87 @@
+//! What the light views show of surfaces that reflect or transmit specularly (glsl/photons/specular_targets.glsl).
+//!
+//! The views hold depth, and what virtual point lights need if a method asks for those. Photons need other things of few texels: the
+//! instances that have such a lobe are drawn once more, over the views' depth, where they equal it.
+
+use ash::vk;
+
+use super::PhotonInputs;
+use crate::frame::geometry::{Attributes, draw_list};
+use crate::frame::light_views::draw_views;
+use crate::frame::scene_data::{DrawnInstance, SceneData};
+use crate::graph::bindings::ImageRef;
+use crate::graph::{ClearColor, Graph};
+use crate::shaders::photons::{Specular, SpecularPush, SpecularTextured, SpecularTexturedPush};
+use crate::vulkan::{DepthState, RasterState};
+
+/// Images of the light views' atlas.
+#[derive(Clone, Copy)]
+pub(crate) struct SpecularViews {
+    /// W: the flux that a texel receives, times the share that its specular lobes may send on; 0 where there is no such surface. The other
+    /// images hold nothing there.
+    pub(crate) mask: ImageRef,
+    pub(crate) surface: ImageRef,
+    pub(crate) layer: ImageRef,
+}
+
+pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> SpecularViews {
+    let PhotonInputs { data, geometry, set, lights, .. } = *inputs;
+    let size = set.atlas.size.map(|side| side.max(1));
+    let made = SpecularViews {
+        mask: graph.image("photons.mask", vk::Format::R32_SFLOAT, size),
+        surface: graph.image("photons.surface", vk::Format::R32G32B32A32_UINT, size),
+        layer: graph.image("photons.layer", vk::Format::R32G32_UINT, size),
+    };
+    let views = draw_views(set);
+
+    let plain = |drawn: &DrawnInstance| drawn.specular && !drawn.textured;
+    let pass = Specular {
+        instances: geometry.instances.clone(),
+        materials: geometry.materials.clone(),
+        indices: geometry.indices.clone(),
+        positions: geometry.positions.clone(),
+        views: lights.views.clone(),
+        lights: lights.lights.clone(),
+        push: SpecularPush { view_index: 0 },
+    };
+    let list = draw_list(data, Attributes::Plain, &views, plain);
+    graph
+        .raster("caustics/photons/views/plain", pass, over_depth(Attributes::Plain, data))
+        .depth_test(lights.depth)
+        .color_fresh(made.surface)
+        .color_fresh(made.layer)
+        .color(made.mask, Some(ClearColor::Float([0.0; 4])))
+        .draw(list);
+
+    let textured = |drawn: &DrawnInstance| drawn.specular && drawn.textured;
+    if !data.drawn.iter().any(textured) {
+        graph.skip("caustics/photons/views/textured", "no textured specular surface");
+        return made;
+    }
+    let pass = SpecularTextured {
+        instances: geometry.instances.clone(),
+        materials: geometry.materials.clone(),
+        indices: geometry.indices.clone(),
+        positions: geometry.positions.clone(),
+        material_textures: geometry.material_textures.clone(),
+        views: lights.views.clone(),
+        lights: lights.lights.clone(),
+        textures: data.texture_kinds(textured),
+        push: SpecularTexturedPush { view_index: 0 },
+    };
+    let list = draw_list(data, Attributes::Textured, &views, textured);
+    graph
+        .raster("caustics/photons/views/textured", pass, over_depth(Attributes::Textured, data))
+        .depth_test(lights.depth)
+        .color(made.surface, None)
+        .color(made.layer, None)
+        .color(made.mask, None)
+        .draw(list);
+    made
+}
+
+/// Draws what the depth attachment shows already.
+fn over_depth(attributes: Attributes, data: &SceneData) -> RasterState {
+    let depth = Some(DepthState { compare: vk::CompareOp::EQUAL, write: false });
+    RasterState { depth, ..attributes.raster_state(data) }
+}
