@@ -1,6 +1,10 @@
 //! `photons`: caustics by photons that leave the specular surfaces which lights see (Quyen 2014, section 3.3).
 
+mod discs;
 pub(crate) mod records;
+pub(crate) mod splat;
+mod tiles;
+mod upsample;
 
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
