@@ -8,6 +8,8 @@
 #ifndef LIB_PIXELS
 #define LIB_PIXELS
 
+#include "lib/pixel_grid.glsl"
+
 const uint GROUP_SIZE = 64u;
 
 // `group_extent`: the pixels that one group covers, a multiple of 8x8; the invocation gets its pixel of the first 8x8.
@@ -22,15 +24,6 @@ ivec2 pixel_of_invocation(uvec2 group_extent) {
 
 ivec2 pixel_of_invocation() {
     return pixel_of_invocation(uvec2(8u));
-}
-
-bool is_inside(ivec2 pixel, ivec2 size) {
-    return all(lessThan(pixel, size));
-}
-
-// Normalised device coordinates of a pixel's centre, y down.
-vec2 ndc_of_pixel(ivec2 pixel, ivec2 size) {
-    return (2.0 * vec2(pixel) + 1.0) / vec2(size) - 1.0;
 }
 
 #endif

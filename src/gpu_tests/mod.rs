@@ -26,6 +26,7 @@ mod path_robustness;
 mod path_weights;
 mod photons_emit;
 mod photons_probe;
+mod photon_splat;
 mod probe;
 mod raster;
 mod rays;

@@ -6,9 +6,13 @@
 
 mod bvh;
 mod choose;
+mod discs;
 mod emit;
 mod land;
 pub(crate) mod records;
+pub(crate) mod splat;
+mod tiles;
+mod upsample;
 mod views;
 
 use crate::frame::gbuffer::GBuffer;

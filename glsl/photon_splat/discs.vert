@@ -1,0 +1,43 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "photon_splat/disc.glsl"
+#include "photon_splat/extent.glsl"
+
+// One corner of the rectangle of samples that a photon's disc may light; nothing where project.comp left the photon out.
+
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) uniform usamplerBuffer discs;
+layout(set = 0, binding = 2) uniform usamplerBuffer places;
+
+layout(push_constant, scalar) uniform Push {
+    ivec2 image_size;
+    int downscale;
+    float tolerance;
+} push;
+
+layout(location = 0) flat out vec4 center;      // render space; 1/h
+layout(location = 1) flat out vec3 irradiance;  // W/m²
+layout(location = 2) flat out vec3 disc_normal;
+
+const uint NO_CELL = 0xFFFFFFFFu;
+
+void main() {
+    int photon = gl_InstanceIndex;
+    uvec4 disc = texelFetch(discs, 2 * photon + 1);
+    center = uintBitsToFloat(texelFetch(discs, 2 * photon));
+    irradiance = uintBitsToFloat(disc.xyz);
+    disc_normal = unpack_direction(disc.w);
+    gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+    if (texelFetch(places, photon).x != NO_CELL) {
+        float radius = 1.0 / center.w;
+        float height = radius * allowed_height(center.w, push.tolerance);
+        Extent extent = disc_extent(camera, center.xyz, disc_normal, radius, height, push.image_size, push.downscale);
+        vec2 size = vec2(lattice_size(push.image_size, push.downscale));
+        vec2 low = clamp(extent.center - extent.radius, vec2(0.0), size);
+        vec2 high = clamp(extent.center + extent.radius, vec2(0.0), size);
+        // Corners 0 1 2 2 1 3 of two triangles.
+        uint corner = 0x312210u >> (4u * (5u - gl_VertexIndex)) & 3u;
+        vec2 place = vec2((corner & 1u) != 0u ? high.x : low.x, (corner & 2u) != 0u ? high.y : low.y);
+        gl_Position = vec4(2.0 * place / size - 1.0, 0.0, 1.0);
+    }
+}

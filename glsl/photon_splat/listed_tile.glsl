@@ -1,0 +1,20 @@
+// One group of 64 works on one tile out of the list of those that photons reach (touch.comp).
+#ifndef PHOTON_SPLAT_LISTED_TILE
+#define PHOTON_SPLAT_LISTED_TILE
+
+#include "photon_splat/state.glsl"
+#include "photon_splat/tile.glsl"
+
+const int NO_TILE = -1;
+
+int listed_tile(usamplerBuffer state, usamplerBuffer tiles) {
+    uint listed = gl_WorkGroupID.y * LISTED_A_ROW + gl_WorkGroupID.x;
+    return listed < texelFetch(state, int(STATE_LISTED)).x ? int(texelFetch(tiles, int(listed)).x) : NO_TILE;
+}
+
+ivec2 sample_of_tile(int tile, ivec2 size) {
+    int columns = tiles_a_row(size);
+    return TILE_SIDE * ivec2(tile % columns, tile / columns) + sample_of_invocation(gl_LocalInvocationIndex);
+}
+
+#endif

@@ -1,0 +1,125 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "photons/records.glsl"
+#include "photon_splat/disc.glsl"
+#include "photon_splat/extent.glsl"
+#include "photon_splat/levels.glsl"
+#include "photon_splat/state.glsl"
+
+// One photon becomes the disc that is splatted, and is counted in its cell of the grid; one that no pixel can see is left out.
+//
+// A disc smaller than about a sample would slip between samples: its radius is at least LEAST_SAMPLES times a sample's extent on its
+// surface. Where it covers few samples, Σ K(d/h)/h²·ΔA over them, ΔA the area of the surface that each stands for, is not yet
+// its integral, 1; the flux is divided by that sum, so that each photon's whole flux arrives.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) uniform usamplerBuffer photons;
+layout(set = 0, binding = 2) uniform usamplerBuffer counts;
+layout(set = 0, binding = 3) uniform usamplerBuffer levels;
+layout(set = 0, binding = 4) writeonly buffer DiscBlock { uvec4 discs[]; };
+layout(set = 0, binding = 5) writeonly buffer PlaceBlock { uvec2 places[]; };  // cell, or NO_CELL · place among its photons
+layout(set = 0, binding = 6) buffer CellCountBlock { uint cell_counts[]; };
+layout(set = 0, binding = 7) buffer CellPeakBlock { uint cell_peaks[]; };  // the brightest of each cell's discs, W/m², as a float's bits
+layout(set = 0, binding = 8) buffer StateBlock { uint state[]; };
+
+layout(push_constant, scalar) uniform Push {
+    ivec2 image_size;
+    uint stage;
+    int downscale;
+    int level_count;
+    float tolerance;  // metres that a photon may be off its surface
+} push;
+
+const uint NO_CELL = 0xFFFFFFFFu;
+const float LEAST_SAMPLES = 1.25;
+const float FEW_SAMPLES = 3.0;
+const float MOST_SAMPLES = 150.0;
+
+shared uint levels_of_group;
+
+// Metres between samples on a plane at the photon across the view.
+float sample_extent(float along) {
+    vec2 extents = 2.0 * vec2(length(camera.right_scaled), length(camera.down_scaled)) / vec2(push.image_size);
+    float scale = camera.depth_range > 0.0 ? 1.0 : max(along, camera.near);
+    return max(extents.x, extents.y) * scale * float(push.downscale);
+}
+
+// Σ K(d/h)/h²·ΔA over the samples of the photon's plane.
+float lattice_sum(Photon photon, float radius, Extent extent) {
+    vec3 offset = photon.position_rs - camera.position_rs;
+    float plane = dot(offset, photon.normal);
+    vec3 x_step = camera.right_scaled * (2.0 / float(push.image_size.x));
+    vec3 y_step = camera.down_scaled * (2.0 / float(push.image_size.y));
+    float area = length(x_step) * length(y_step) * float(push.downscale * push.downscale);
+    bool perspective = camera.depth_range <= 0.0;
+    float along_normal = dot(camera.forward, photon.normal);
+    ivec2 first = ivec2(ceil(extent.center - extent.radius - 0.5));
+    ivec2 last = ivec2(floor(extent.center + extent.radius - 0.5));
+    float sum = 0.0;
+    for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) {
+            vec2 ndc = ndc_of_pixel(ivec2(x, y) * push.downscale + push.downscale / 2, push.image_size);
+            vec3 across = ndc.x * camera.right_scaled + ndc.y * camera.down_scaled;
+            vec3 ray = perspective ? camera.forward + across : camera.forward;
+            vec3 from_start = perspective ? offset : offset - across;
+            float distance = dot(from_start, photon.normal) / dot(ray, photon.normal);
+            float area_seen = perspective ? area * distance * distance * distance / abs(plane) : area / abs(along_normal);
+            vec3 from_center = (ray * distance - from_start) / radius;
+            sum += distance > 0.0 ? kernel_shape(dot(from_center, from_center)) * area_seen : 0.0;
+        }
+    }
+    return sum * kernel_peak() / (radius * radius);
+}
+
+void main() {
+    if (gl_LocalInvocationIndex == 0u) {
+        levels_of_group = 0u;
+    }
+    barrier();
+    uint index = gl_GlobalInvocationID.x;
+    if (index < texelFetch(counts, int(STAGE_WORDS * push.stage + COUNT_WORD)).x) {
+        Photon photon = load_photon(photons, index);
+        vec3 offset = photon.position_rs - camera.position_rs;
+        vec3 to_eye = camera.depth_range > 0.0 ? -camera.forward : -normalize_or(offset, camera.forward);
+        float cosine = max(abs(dot(to_eye, photon.normal)), 0.1);
+        float sample_across = sample_extent(dot(offset, camera.forward));
+        float radius = max(photon.radius, LEAST_SAMPLES * sample_across / cosine);
+        float height = radius * allowed_height(1.0 / radius, push.tolerance);
+        Extent extent =
+            disc_extent(camera, photon.position_rs, photon.normal, radius, height, push.image_size, push.downscale);
+        vec3 irradiance = photon.flux * (kernel_peak() / (radius * radius));
+        vec2 covered = 2.0 * extent.radius + 1.0;
+        if (radius * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
+            irradiance /= clamp(lattice_sum(photon, radius, extent), 0.5, 2.0);
+        }
+        float peak = min(max3(irradiance), 1e30);
+        irradiance = clamp(irradiance, vec3(0.0), vec3(1e30));
+        // Comparisons with what is no number are false.
+        bool kept = peak > 0.0 && extent.radius.x > 0.0 && radius > 0.0 && extent.center.x == extent.center.x
+            && extent.center.y == extent.center.y;
+        uvec2 place = uvec2(NO_CELL, 0u);
+        if (kept) {
+            float reach = max(extent.radius.x, extent.radius.y);
+            int level = 0;
+            while (level < push.level_count - 1 && reach > reach_of_level(level)) {
+                ++level;
+            }
+            uvec4 cells = texelFetch(levels, level);
+            vec2 size = vec2(lattice_size(push.image_size, push.downscale));
+            ivec2 cell = ivec2(clamp(extent.center, vec2(0.0), size - 0.5)) >> cell_log2(level);
+            place.x = uint(cell_index(cell, cells));
+            place.y = atomicAdd(cell_counts[place.x], 1u);
+            atomicMax(cell_peaks[place.x], floatBitsToUint(peak));
+            atomicOr(levels_of_group, 1u << level);
+        }
+        places[index] = place;
+        discs[2u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(1.0 / radius));
+        discs[2u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && levels_of_group != 0u) {
+        atomicOr(state[STATE_LEVELS], levels_of_group);
+    }
+}

@@ -1,0 +1,47 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "photon_splat/answer.glsl"
+#include "photon_splat/fixed_point.glsl"
+#include "photon_splat/lattice.glsl"
+#include "photon_splat/listed_tile.glsl"
+
+// Turns the sums of one sample of a tile that photons reach into what gather.comp gives.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usampler2D surface;
+layout(set = 0, binding = 1) uniform sampler2D specular;
+layout(set = 0, binding = 2) uniform usamplerBuffer state;
+layout(set = 0, binding = 3) uniform usamplerBuffer tiles;
+layout(set = 0, binding = 4) uniform usamplerBuffer tile_peaks;
+layout(set = 0, binding = 5) uniform usamplerBuffer sums;
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image2D result;
+
+layout(push_constant, scalar) uniform Push {
+    ivec2 image_size;
+    int downscale;
+    uint has_specular;
+} push;
+
+// As in discs.frag.
+const int TERM_BITS = 30;
+
+void main() {
+    int tile = listed_tile(state, tiles);
+    ivec2 size = lattice_size(push.image_size, push.downscale);
+    ivec2 place = sample_of_tile(tile, size);
+    if (tile == NO_TILE || !is_inside(place, size)) {
+        return;
+    }
+    ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
+    int first = 2 * (64 * tile + int(gl_LocalInvocationIndex));
+    uvec4 low = texelFetch(sums, first);
+    uvec4 high = texelFetch(sums, first + 1);
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x), TERM_BITS);
+    vec3 sum = vec3(from_fixed(low.x, high.x, scale), from_fixed(low.y, high.y, scale), from_fixed(low.z, high.z, scale));
+    if (push.downscale == 1) {
+        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+        sum = answer(sum, texelFetch(surface, pixel, 0), lobe);
+    }
+    imageStore(result, place, vec4(sum, 1.0));
+}

@@ -1,0 +1,55 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/pixels.glsl"
+#include "photon_splat/levels.glsl"
+#include "photon_splat/state.glsl"
+#include "photon_splat/tile.glsl"
+
+// Lists one tile of 8×8 samples if a photon may reach it or a sample beside it, with the brightest disc among those photons.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer levels;
+layout(set = 0, binding = 1) uniform usamplerBuffer cell_peaks;
+layout(set = 0, binding = 2) writeonly buffer TilePeakBlock { uint tile_peaks[]; };
+layout(set = 0, binding = 3) writeonly buffer TileBlock { uint tiles[]; };
+layout(set = 0, binding = 4) buffer StateBlock { uint state[]; };
+
+layout(push_constant, scalar) uniform Push {
+    ivec2 tile_count;
+    int level_count;
+    uint reserved;
+} push;
+
+void main() {
+    ivec2 tile = pixel_of_invocation();
+    if (!is_inside(tile, push.tile_count)) {
+        return;
+    }
+    uint filled = state[STATE_LEVELS];
+    uint peak = 0u;
+    for (int level = 0; level < push.level_count; ++level) {
+        if ((filled >> level & 1u) == 0u) {
+            continue;
+        }
+        uvec4 cells = texelFetch(levels, level);
+        ivec4 around = cells_around(TILE_SIDE * tile, TILE_SIDE * tile + TILE_SIDE - 1, 1.0, level, cells);
+        for (int y = around.y; y <= around.w; ++y) {
+            for (int x = around.x; x <= around.z; ++x) {
+                peak = max(peak, texelFetch(cell_peaks, cell_index(ivec2(x, y), cells)).x);
+            }
+        }
+    }
+    int index = tile.y * push.tile_count.x + tile.x;
+    tile_peaks[index] = peak;
+    if (peak > 0u) {
+        uint listed = atomicAdd(state[STATE_LISTED], 1u);
+        tiles[listed] = uint(index);
+        if (listed < LISTED_A_ROW) {
+            atomicMax(state[STATE_TILES], listed + 1u);
+        }
+        if (listed % LISTED_A_ROW == 0u) {
+            atomicMax(state[STATE_TILES + 1u], listed / LISTED_A_ROW + 1u);
+        }
+    }
+}

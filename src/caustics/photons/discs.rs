@@ -1,0 +1,56 @@
+//! Splatting by drawing a disc a photon: the paper's. Where it blends floats, sums here are 64-bit integers in a buffer, added to by atomics of
+//! the fragment shader: blending rounds in the order of photons, which is not the same twice.
+
+use ash::vk;
+
+use super::records::{DRAW_WORD, STAGE_WORDS};
+use super::splat::{RECORDS, Splat, TILES_WORD};
+use crate::graph::Graph;
+use crate::shaders::photon_splat::{Clear, ClearPush, Discs, DiscsPush, Resolve, ResolvePush};
+use crate::vulkan::RasterState;
+
+/// Declares the passes that fill `splat.result`.
+pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
+    let (buffer, landed) = (splat.buffer, &splat.landed);
+    // Two texels a sample: the low words of three sums, the high ones.
+    let sums = graph.buffer::<u32>("photons.sums", 8 * 64 * splat.grid.tile_count());
+
+    let pass = Clear {
+        state: splat.state_texels(),
+        tiles: splat.tile_texels(),
+        sums: sums.write(),
+        push: ClearPush { reserved: 0 },
+    };
+    graph.pass("caustics/photons/clear-sums", pass).threads_indirect(splat.state, TILES_WORD);
+
+    let pass = Discs {
+        camera: buffer.camera.clone(),
+        discs: splat.discs.texels(RECORDS),
+        places: splat.places.texels(vk::Format::R32G32_UINT),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        tile_peaks: splat.tile_peak_texels(),
+        sums: sums.read_write(),
+        gaussian: splat.gaussian,
+        push: DiscsPush { image_size: splat.image_size, downscale: splat.downscale, tolerance: splat.tolerance },
+    };
+    let state = RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, ..RasterState::default() };
+    graph.raster("caustics/photons/discs", pass, state).area(splat.grid.size).draw_indirect(
+        landed.counts,
+        STAGE_WORDS * landed.stage + DRAW_WORD,
+        1,
+    );
+
+    let (specular, has_specular) = buffer.specular();
+    let pass = Resolve {
+        surface: buffer.surface.sampled(),
+        specular: specular.sampled(),
+        state: splat.state_texels(),
+        tiles: splat.tile_texels(),
+        tile_peaks: splat.tile_peak_texels(),
+        sums: sums.texels(RECORDS),
+        result: splat.result.modify(),
+        push: ResolvePush { image_size: splat.image_size, downscale: splat.downscale, has_specular },
+    };
+    graph.pass("caustics/photons/resolve", pass).threads_indirect(splat.state, TILES_WORD);
+}

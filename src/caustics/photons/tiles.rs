@@ -1,0 +1,66 @@
+//! Splatting by gathering: photons are sorted into cells of a grid by size and place (glsl/photon_splat/levels.glsl), and each sample looks through
+//! the cells around it. The sorted list is as long as there are photons, whatever their sizes.
+
+use ash::vk;
+
+use super::records::{DISPATCH_WORD, STAGE_WORDS};
+use super::splat::{RECORDS, ROWS_WORD, Splat, TILES_WORD};
+use crate::graph::Graph;
+use crate::shaders::photon_splat::{Gather, GatherPush, Scan, ScanPush, Scatter, ScatterPush};
+
+const WORDS: vk::Format = vk::Format::R32_UINT;
+
+/// Declares the passes that fill `splat.result`.
+pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
+    let (grid, landed) = (&splat.grid, &splat.landed);
+    let cell_starts = graph.buffer::<u32>("photons.cell_starts", grid.cell_count as usize);
+    let sorted_count = graph.buffer::<u32>("photons.sorted_count", 1);
+    let sorted_discs = graph.buffer::<[u32; 4]>("photons.sorted_discs", 2 * landed.capacity as usize);
+
+    graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
+    let pass = Scan {
+        levels: grid.levels.texels(RECORDS),
+        cell_counts: splat.cell_counts.texels(WORDS),
+        cell_starts: cell_starts.write(),
+        sorted_count: sorted_count.read_write(),
+        push: ScanPush { row_count: grid.row_count, reserved: 0 },
+    };
+    graph.pass("caustics/photons/scan", pass).threads_indirect(splat.state, ROWS_WORD);
+
+    let pass = Scatter {
+        counts: landed.counts.texels(WORDS),
+        discs: splat.discs.texels(RECORDS),
+        places: splat.places.texels(vk::Format::R32G32_UINT),
+        cell_starts: cell_starts.texels(WORDS),
+        sorted_discs: sorted_discs.write(),
+        push: ScatterPush { stage: landed.stage as u32, reserved: 0 },
+    };
+    graph
+        .pass("caustics/photons/scatter", pass)
+        .count("photons in view", sorted_count, 0)
+        .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
+
+    let (specular, has_specular) = splat.buffer.specular();
+    let pass = Gather {
+        camera: splat.buffer.camera.clone(),
+        depth: splat.buffer.depth.sampled(),
+        surface: splat.buffer.surface.sampled(),
+        specular: specular.sampled(),
+        state: splat.state_texels(),
+        tiles: splat.tile_texels(),
+        tile_peaks: splat.tile_peak_texels(),
+        levels: grid.levels.texels(RECORDS),
+        cell_starts: cell_starts.texels(WORDS),
+        sorted_discs: sorted_discs.texels(RECORDS),
+        result: splat.result.modify(),
+        gaussian: splat.gaussian,
+        push: GatherPush {
+            image_size: splat.image_size,
+            downscale: splat.downscale,
+            level_count: grid.level_count,
+            has_specular,
+            tolerance: splat.tolerance,
+        },
+    };
+    graph.pass("caustics/photons/gather", pass).threads_indirect(splat.state, TILES_WORD);
+}
