@@ -24,6 +24,7 @@ mod path_probe;
 mod path_repeats;
 mod path_robustness;
 mod path_weights;
+mod photon_lists;
 mod probe;
 mod raster;
 mod rays;

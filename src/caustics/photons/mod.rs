@@ -1,6 +1,16 @@
 //! `photons`: caustics by photons that leave the specular surfaces which lights see (Quyen 2014, section 3.3).
 
+#[allow(dead_code, reason = "the caller joins with the emission of photons")]
+pub(crate) mod layers;
+#[allow(dead_code, reason = "the caller joins with the emission of photons")]
+pub(crate) mod lines;
+#[allow(dead_code, reason = "the caller joins with the emission of photons")]
+pub(crate) mod lists;
+#[allow(dead_code, reason = "the caller joins with the emission of photons")]
+pub(crate) mod march;
 pub(crate) mod records;
+#[allow(dead_code, reason = "the caller joins with the emission of photons")]
+pub(crate) mod views;
 
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
