@@ -9,6 +9,7 @@ layout(set = 0, binding = 5) uniform samplerBuffer views;
 
 layout(push_constant, scalar) uniform Push {
     uint view_index;
+    uint view_count;
     uint resolution;
     uint capacity;  // nodes
 } push;
@@ -32,11 +33,13 @@ vec3 front_normal(Instance instance, uint primitive) {
     return outside * normalize_or(face_normal(instance, primitive), vec3(0.0, 0.0, 1.0));
 }
 
-// A surface seen edge-on covers texels by chance and has no plane there; another view sees it.
+// Whether this view sees a surface at least half as well as the best does. Seen edge-on, it covers texels by chance and has no plane there.
 bool is_kept(vec3 normal) {
-    vec4 axis = texelFetch(views, 8 * int(push.view_index) + 5);
-    float least = texelFetch(views, 8 * int(push.view_index) + 6).w;
-    return abs(dot(normal, axis.xyz)) >= least;
+    float best = 0.0;
+    for (uint view = 0u; view < push.view_count; ++view) {
+        best = max(best, abs(dot(normal, texelFetch(views, 8 * int(view) + 5).xyz)));
+    }
+    return abs(dot(normal, texelFetch(views, 8 * int(push.view_index) + 5).xyz)) >= 0.5 * best;
 }
 
 #endif

@@ -11,13 +11,12 @@ struct ListView {
     // And back: the point at `depth` metres behind the texel coordinate (x, y) is base + depth·axis + s·(x·across + y·down), where s is
     // the depth in perspective and 1 in a parallel view.
     vec3 base;
-    float near;          // metres along the axis; 0: a parallel view
+    float near;   // metres along the axis; 0: a parallel view
     vec3 axis;
-    float far;           // depth of the farthest surface, metres
+    float far;    // depth of the farthest surface, metres
     vec3 across;
-    float least_facing;  // of a surface that is kept: |n·axis|
     vec3 down;
-    float texel;         // its longer side in metres, at distance 1 in perspective
+    float texel;  // its longer side in metres, at distance 1 in perspective
 };
 
 ListView load_list_view(samplerBuffer views, uint index) {
@@ -28,7 +27,7 @@ ListView load_list_view(samplerBuffer views, uint index) {
     vec4 down = texelFetch(views, first + 7);
     return ListView(
         texelFetch(views, first), texelFetch(views, first + 1), texelFetch(views, first + 2), texelFetch(views, first + 3),
-        base.xyz, base.w, axis.xyz, axis.w, across.xyz, across.w, down.xyz, down.w);
+        base.xyz, base.w, axis.xyz, axis.w, across.xyz, down.xyz, down.w);
 }
 
 // The line of points behind a texel coordinate: start + depth·way.

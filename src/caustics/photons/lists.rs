@@ -135,11 +135,12 @@ fn levels(resolution: u32, view_count: u32) -> (u32, [u32; MOST_LEVELS], usize) 
 /// A pass without attachments: every fragment goes into its texel's list, in whatever order.
 fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, views: &[ListView]) {
     let ListInputs { data, geometry, .. } = *inputs;
-    let (resolution, capacity) = (lists.resolution, lists.nodes.count() as u32);
+    let SceneLists { resolution, view_count, .. } = *lists;
+    let capacity = lists.nodes.count() as u32;
     let draw_views = draw_views(views, resolution, |view_index| {
-        bytemuck::bytes_of(&AppendPush { view_index, resolution, capacity }).to_vec()
+        bytemuck::bytes_of(&AppendPush { view_index, view_count, resolution, capacity }).to_vec()
     });
-    let area = [resolution, resolution * lists.view_count];
+    let area = [resolution, resolution * view_count];
     let state = |attributes: Attributes| RasterState { depth: None, ..attributes.raster_state(data) };
     let solid = Append {
         instances: geometry.instances.clone(),
@@ -149,11 +150,11 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.read_write(),
-        push: AppendPush { view_index: 0, resolution, capacity },
+        push: AppendPush { view_index: 0, view_count, resolution, capacity },
     };
     let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
     let pass = graph.raster("caustics/photons/lists", solid, state(Attributes::Depth));
-    pass.note("views", u64::from(lists.view_count))
+    pass.note("views", u64::from(view_count))
         .note("capacity", u64::from(capacity))
         .count("nodes", lists.node_count, 0)
         .area(area)
@@ -174,7 +175,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.read_write(),
         textures: data.texture_kinds(cut),
-        push: AppendMaskedPush { view_index: 0, resolution, capacity },
+        push: AppendMaskedPush { view_index: 0, view_count, resolution, capacity },
     };
     let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
     let pass = graph.raster("caustics/photons/lists-masked", masked, state(Attributes::DepthMasked));

@@ -7,11 +7,6 @@ use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::renderer::{ListProjection, PhotonSettings};
 use crate::shaders::types;
 
-/// Of every surface some axis of an orthogonal triple sees at least 1/√3. A surface that is seen worse than this leaves no nodes: the other
-/// axes have better ones. The range between the two is seen twice, so that curved surfaces have no gap where one axis takes over from another.
-const LEAST_FACING_OF_THREE: f32 = 0.3;
-/// With fewer axes only what is seen edge-on is left out.
-const LEAST_FACING: f32 = 0.01;
 /// Texels around the scene. What ends at its bounds, such as a room's floor, ends between two texels then, and lacks no sliver.
 const MARGIN: f64 = 1.0;
 
@@ -50,7 +45,7 @@ pub(crate) fn list_views(data: &SceneData, camera: Option<&types::Camera>, setti
     let side = f64::from(settings.resolution);
     match (settings.projection, camera) {
         (ListProjection::Camera, Some(camera)) => vec![camera_view(data, camera, side)],
-        _ => axes(settings.views).into_iter().map(|axes| parallel_view(data, axes, side, settings.views)).collect(),
+        _ => axes(settings.views).into_iter().map(|axes| parallel_view(data, axes, side)).collect(),
     }
 }
 
@@ -79,7 +74,7 @@ fn extent(data: &SceneData, axis: DVec3) -> [f64; 2] {
     data.drawn.iter().filter(|drawn| drawn.index_count > 0).map(of).reduce(join).unwrap_or([-1.0, 1.0])
 }
 
-fn parallel_view(data: &SceneData, [right, down, forward]: [DVec3; 3], side: f64, views: u32) -> ListView {
+fn parallel_view(data: &SceneData, [right, down, forward]: [DVec3; 3], side: f64) -> ListView {
     let least = 1e-3 * data.radius;
     // The texels' edges, and their size.
     let lateral = |axis: DVec3| {
@@ -93,7 +88,6 @@ fn parallel_view(data: &SceneData, [right, down, forward]: [DVec3; 3], side: f64
     let start = nearest - margin;
     let row = |axis: DVec3, offset: f64, unit: f64| (axis / unit).as_vec3().extend((-offset / unit) as f32);
     let base = right * left + down * top + forward * start;
-    let least_facing = if views == 3 { LEAST_FACING_OF_THREE } else { LEAST_FACING };
     ListView {
         texels: [
             row(right, left, width),
@@ -102,7 +96,7 @@ fn parallel_view(data: &SceneData, [right, down, forward]: [DVec3; 3], side: f64
             row(forward, start, 1.0),
             base.as_vec3().extend(0.0),
             forward.as_vec3().extend((farthest + margin - start) as f32),
-            (right * width).as_vec3().extend(least_facing),
+            (right * width).as_vec3().extend(0.0),
             (down * height).as_vec3().extend(width.max(height) as f32),
         ],
     }
