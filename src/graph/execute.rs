@@ -27,6 +27,9 @@ pub(crate) struct Executed {
     pub(crate) passes: Vec<PassTiming>,
     pub(crate) gpu_ms: f64,
     pub(crate) pipeline_ms: f64,
+    /// Buffers that were too small, with the elements that they held and needed. What was made of them is wrong; the next frame gives them
+    /// enough.
+    pub(crate) outgrown: Vec<(String, [usize; 2])>,
     read_backs: Vec<Vec<u8>>,
 }
 
@@ -125,7 +128,24 @@ impl Graph<'_> {
         };
         let declared: Vec<&str> = self.resources.iter().map(|resource| resource.name.as_str()).collect();
         self.store.retain(|name| declared.contains(&name));
-        Ok(Executed { passes, gpu_ms, pipeline_ms, read_backs: self.copy_read_backs(&read_back) })
+        let read_backs = self.copy_read_backs(&read_back);
+        let outgrown = self.note_growth(&read_backs);
+        Ok(Executed { passes, gpu_ms, pipeline_ms, outgrown, read_backs })
+    }
+
+    /// Remembers how much the buffers that were too small need, and a little more, so that not every change outgrows them again.
+    fn note_growth(&mut self, read_backs: &[Vec<u8>]) -> Vec<(String, [usize; 2])> {
+        let mut outgrown = Vec::new();
+        for growing in &self.growing {
+            let words = read_backs[growing.needed.0].chunks_exact(4);
+            let needed = words.skip(growing.index).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+            let needed = needed.take(1).sum::<u32>() as usize;
+            if needed > growing.capacity {
+                self.store.grown.insert(growing.name.clone(), needed + needed / 8);
+                outgrown.push((growing.name.clone(), [growing.capacity, needed]));
+            }
+        }
+        outgrown
     }
 
     /// Allocates what the running passes touch, and fills what the host supplies.

@@ -97,11 +97,20 @@ pub(crate) struct Graph<'s> {
     wanted: Vec<Version>,
     /// Images with their mip level; buffers with 0.
     read_backs: Vec<(usize, u32)>,
+    growing: Vec<Growing>,
+}
+
+/// A buffer whose size only the device finds out.
+struct Growing {
+    name: String,
+    capacity: usize,
+    needed: ReadBack,
+    index: usize,
 }
 
 impl<'s> Graph<'s> {
     pub(crate) fn new(store: &'s mut Store) -> Graph<'s> {
-        Graph { store, resources: Vec::new(), passes: Vec::new(), wanted: Vec::new(), read_backs: Vec::new() }
+        Graph { store, resources: Vec::new(), passes: Vec::new(), wanted: Vec::new(), read_backs: Vec::new(), growing: Vec::new() }
     }
 
     fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {
@@ -133,6 +142,21 @@ impl<'s> Graph<'s> {
         let held = self.store.buffer_key(name, bytes).unwrap_or(0);
         let id = self.add(name, Body::Buffer { bytes }, 1, |_| (held, Dependence::NONE));
         BufferRef { id, count, element: PhantomData }
+    }
+
+    /// A buffer for a number of elements that only the device finds out: `least` at first, and what [`Graph::grows`] found to be
+    /// needed from then on.
+    pub(crate) fn growing_buffer<T>(&mut self, name: &str, least: usize) -> BufferRef<T> {
+        let count = self.store.grown.get(name).map_or(least, |&grown| grown.max(least));
+        self.buffer(name, count)
+    }
+
+    /// Says that word `index` of `needed` counts the elements that `buffer` ought to hold, also those for which there is no room. If it turns out
+    /// that there was not enough, [`Executed::outgrown`] says so, and the frame has to be declared and made again.
+    pub(crate) fn grows<T>(&mut self, buffer: BufferRef<T>, needed: BufferRef<u32>, index: usize) {
+        let needed = self.read_back_buffer(needed);
+        let name = self.resources[buffer.id].name.clone();
+        self.growing.push(Growing { name, capacity: buffer.count, needed, index });
     }
 
     /// A buffer that the host fills with `elements`.

@@ -42,6 +42,8 @@ pub(crate) struct Store {
     /// Work counters and indirect arguments, copied here for the host.
     pub(super) counters: Buffer,
     pub(super) read_back: Option<Buffer>,
+    /// Elements that growing buffers need, by name.
+    pub(super) grown: HashMap<String, usize>,
 }
 
 /// Passes of a frame for which there are timestamps, markers and counters.
@@ -63,6 +65,7 @@ impl Store {
             markers: host_visible("crash markers", u64::from(MAX_PASSES) * 4)?,
             counters: host_visible("work counters", MAX_COUNTERS * 4)?,
             read_back: None,
+            grown: HashMap::new(),
         })
     }
 
@@ -183,6 +186,7 @@ impl Store {
 
     /// Returns the memory of names that a frame no longer declares.
     pub(super) fn retain(&mut self, keep: impl Fn(&str) -> bool) {
+        self.grown.retain(|name, _| keep(name));
         self.images.retain(|name, _| keep(name));
         self.buffers.retain(|name, _| keep(name));
     }

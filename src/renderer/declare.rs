@@ -18,6 +18,7 @@ use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
 use crate::scene::{Facts, Scene};
+use crate::shaders::types;
 
 /// What a declared frame offers; absent where a method, the scene or the request leaves it out.
 pub(crate) struct Declared {
@@ -87,7 +88,7 @@ pub(crate) fn declare(
         image: None,
         display: None,
     };
-    let frame = Frame { data, geometry: &geometry, set, traced, settings, facts: &facts };
+    let frame = Frame { data, geometry: &geometry, camera: &view.camera, set, traced, settings, facts: &facts };
     declare_light(graph, &mut declared, &frame, wants);
 
     if image_wanted {
@@ -101,6 +102,7 @@ pub(crate) fn declare(
 struct Frame<'a> {
     data: &'a SceneData,
     geometry: &'a Geometry,
+    camera: &'a types::Camera,
     set: &'a LightSet,
     traced: Option<&'a TracedScene>,
     settings: &'a Settings,
@@ -146,6 +148,7 @@ fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'
                 data: frame.data,
                 geometry: frame.geometry,
                 facts: frame.facts,
+                camera: frame.camera,
                 set: frame.set,
                 lights: &lights,
                 traced: frame.traced,

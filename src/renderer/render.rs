@@ -74,8 +74,21 @@ impl Renderer {
         self.store.device()
     }
 
-    /// A frame whose methods are all passes of one graph.
+    /// A frame whose methods are all passes of one graph. If some buffer could not know how much it had to hold and was too small, the
+    /// frame is made again with a larger one.
     pub(super) fn draw(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
+        loop {
+            let (frame, outgrown) = self.draw_once(scene, request)?;
+            if outgrown.is_empty() {
+                return Ok(frame);
+            }
+            for (name, [held, needed]) in outgrown {
+                tracing::info!("{name} held {held} elements of {needed}; the frame is made again with more");
+            }
+        }
+    }
+
+    fn draw_once(&mut self, scene: &Scene, request: &FrameRequest) -> Result<(Frame, Vec<Outgrown>), Error> {
         let start = Instant::now();
         let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -132,7 +145,7 @@ impl Renderer {
             passes: executed.passes,
             memory_bytes,
         };
-        Ok(frame)
+        Ok((frame, std::mem::take(&mut executed.outgrown)))
     }
 
     /// The passes of the frame that `request` asks for, and which of them would be skipped and why. Nothing runs.
@@ -211,6 +224,9 @@ impl std::fmt::Debug for Renderer {
         f.debug_struct("Renderer").field("settings", &self.settings).finish_non_exhaustive()
     }
 }
+
+/// A buffer that was too small: its name, what it held and what it needed.
+type Outgrown = (String, [usize; 2]);
 
 /// From four floats a pixel.
 fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {

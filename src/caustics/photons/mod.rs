@@ -9,6 +9,11 @@ mod choose;
 mod discs;
 mod emit;
 mod land;
+mod layers;
+mod lines;
+mod list_views;
+mod lists;
+mod march;
 pub(crate) mod records;
 pub(crate) mod splat;
 mod tiles;
@@ -25,8 +30,10 @@ use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::{PhotonSettings, PhotonTracing};
 use crate::scene::Facts;
+use crate::shaders::types;
 use emit::Arrivals;
 use records::{LandedPhotons, PhotonRays};
+use splat::{SplatInputs, splat};
 
 /// What every device lets a kernel see of one buffer, bytes.
 const LARGEST_BUFFER: u32 = 1 << 27;
@@ -37,6 +44,7 @@ pub(crate) struct PhotonInputs<'a> {
     pub(crate) data: &'a SceneData,
     pub(crate) geometry: &'a Geometry,
     pub(crate) facts: &'a Facts,
+    pub(crate) camera: &'a types::Camera,
     pub(crate) set: &'a LightSet,
     pub(crate) lights: &'a LightViews,
     /// Present where photons are traced through the hierarchy.
@@ -46,8 +54,9 @@ pub(crate) struct PhotonInputs<'a> {
 
 /// Declares the method's passes in the order in which they run; returns the slot.
 pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
-    let _landed = trace_all(graph, inputs);
-    None
+    let traced = trace_all(graph, inputs);
+    let splatted = SplatInputs { buffer: inputs.buffer, settings: inputs.settings, length: inputs.data.radius };
+    Some(splat(graph, &splatted, &traced.landed))
 }
 
 /// Photons where they landed, and what led there.
@@ -76,6 +85,9 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
     let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
     let arrivals = Arrivals::declare(graph, capacity);
+    let lists = (settings.trace != PhotonTracing::Bvh).then(|| {
+        lists::build(graph, &lists::ListInputs { data: inputs.data, geometry: inputs.geometry, camera: Some(inputs.camera), settings })
+    });
     let scene = inputs.traced.map(|traced| (traced, traced.import(graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
     emit::emit(graph, inputs, &views, &choice, arrivals);
@@ -84,13 +96,15 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     for stage in 0..stages {
         rays = PhotonRays { stage, ..all_rays };
         emit::scatter(graph, inputs, &choice, arrivals, &rays);
-        match (settings.trace, through) {
-            (PhotonTracing::Bvh, Some((traced, bindings))) => {
+        match (settings.trace, through, lists) {
+            (PhotonTracing::Lines, _, Some(lists)) => lines::trace(graph, &lists, &rays, choice.counts),
+            (PhotonTracing::March, _, Some(lists)) => {
+                march::trace(graph, &lists, &rays, choice.counts);
+            }
+            (PhotonTracing::Bvh, Some((traced, bindings)), _) => {
                 bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts);
             }
-            (PhotonTracing::Bvh | PhotonTracing::Lines | PhotonTracing::March, _) => {
-                graph.skip(&format!("caustics/photons/trace.{stage}"), "no scene to trace photons through");
-            }
+            _ => graph.skip(&format!("caustics/photons/trace.{stage}"), "no scene to trace photons through"),
         }
         land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));
     }

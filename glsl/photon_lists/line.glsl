@@ -1,0 +1,16 @@
+// Set 0 and push constants of the program that draws photon rays as lines over the texels of one view.
+#ifndef PHOTON_LISTS_LINE
+#define PHOTON_LISTS_LINE
+
+#include "photon_lists/hit.glsl"
+
+layout(set = 0, binding = 0) uniform usamplerBuffer rays;
+layout(set = 0, binding = 1) uniform samplerBuffer views;
+
+layout(push_constant, scalar) uniform Push {
+    uint view_index;
+    uint resolution;
+    uint resolves;  // 0: finds the distance, 1: finds what is there
+} push;
+
+#endif

@@ -1,0 +1,51 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "photon_lists/line.glsl"
+
+// One texel of a photon's line: what the ray meets of the texel's list (Quyen 2014, alg. 3.5; the test itself is photon_lists/hit.glsl's). The
+// paper writes each line into a row of a texture and takes the row's first hit; here the nearest is an atomic minimum of the distance, in m,
+// and what lies there is found by drawing the lines once more. Depths come from the ray, not from interpolation along the line.
+
+layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
+layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
+layout(set = 0, binding = 4) buffer Hits { uint hits[]; };
+
+layout(location = 0) flat in uint ray_index;
+
+void main() {
+    uvec2 cell = uvec2(gl_FragCoord.xy);
+    uint row = push.view_index * push.resolution + cell.y;
+    uvec4 list = texelFetch(pixels, int(row * push.resolution + cell.x));
+    if (list.x != NO_NODE) {
+        ListView view = load_list_view(views, push.view_index);
+        PhotonRay ray = load_photon_ray(rays, ray_index);
+        ViewRay along = view_ray(view, ray);
+        vec2 center = vec2(cell) + 0.5;
+        // Where the ray is beside the texel's centre, and how far it is from there to the ends of its column.
+        vec2 crossing = (center * along.start.z - along.start.xy) / (along.step.xy - center * along.step.z);
+        vec2 speed = abs(along.step.xy - center * along.step.z);
+        float t = speed.x > speed.y ? crossing.x : crossing.y;
+        float reach = 2.0 * COLUMN * (along.start.z + t * along.step.z) / max(speed.x, speed.y);
+        vec2 depths = along.depth + vec2(t - reach, t + reach) * along.depth_step;
+        float known = uintBitsToFloat(hits[4u * ray_index]);
+        bool beyond = min(depths.x, depths.y) > uintBitsToFloat(~list.z) || max(depths.x, depths.y) < uintBitsToFloat(list.y);
+        // `known` is a NaN as long as nothing was hit: no comparison holds then.
+        if (!beyond && !(t - reach > known)) {
+            Column column = column_of(view, center);
+            NodeHit nearest = NodeHit(NO_HIT_DISTANCE, HIT_NONE, HIT_NONE);
+            uint index = list.x;
+            while (index != NO_NODE) {
+                uvec4 node = texelFetch(nodes, int(index));
+                meet_node(node, view, column, center, along, ray, nearest);
+                index = node.z;
+            }
+            uint bits = nearest.distance == NO_HIT_DISTANCE ? HIT_NONE : floatBitsToUint(nearest.distance);
+            if (push.resolves == 0u) {
+                atomicMin(hits[4u * ray_index], bits);
+            } else if (bits == hits[4u * ray_index]) {
+                atomicMin(hits[4u * ray_index + 1u], nearest.normal);
+                atomicMin(hits[4u * ray_index + 2u], nearest.material);
+            }
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! The nearest surfaces of each texel by depth peeling (Krüger et al. 2006).
+
+use super::lists::{ListInputs, SceneLists};
+use super::list_views::ListView;
+use crate::graph::Graph;
+
+pub(super) fn peel(
+    _graph: &mut Graph<'_>,
+    _inputs: &ListInputs<'_>,
+    _lists: &SceneLists,
+    _views: &[ListView],
+    _count: u32,
+) {
+}

@@ -1,0 +1,224 @@
+//! The scene as per-pixel lists: all surfaces behind each texel of a few views (Quyen 2014, section 3.3.2.1, after Yang et al. 2010), or the
+//! nearest of them (`layers`), and which depths of a block of texels are occupied.
+//!
+//! Nobody knows the number of nodes before the lists are drawn. The pool starts with some for every texel; what does not fit is counted all the
+//! same, and the frame is made again with a pool that holds it ([`Graph::grows`]).
+
+use ash::vk;
+
+use super::layers;
+use super::list_views::{ListView, list_views};
+use crate::frame::geometry::{Attributes, DrawView, Geometry, draw_list};
+use crate::frame::scene_data::{DrawnInstance, SceneData};
+use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::{Dependence, Graph};
+use crate::renderer::{ListProjection, PhotonGeometry, PhotonSettings};
+use crate::shaders::photon_lists::{
+    Append, AppendMasked, AppendMaskedPush, AppendPush, Coarser, CoarserPush, Occupancy, OccupancyPush,
+};
+use crate::shaders::types;
+use crate::vulkan::RasterState;
+
+/// The pool's first size, for each texel of each view.
+const NODES_PER_TEXEL: usize = 4;
+/// A block of level l covers 4^l × 4^l texels (glsl/photon_lists/slices.glsl).
+const LEVEL_BITS: u32 = 2;
+/// The coarsest level has so many blocks to a side at least.
+const COARSEST: u32 = 4;
+const MOST_LEVELS: usize = 4;
+
+/// What the lists are made of.
+pub(crate) struct ListInputs<'a> {
+    pub(crate) data: &'a SceneData,
+    pub(crate) geometry: &'a Geometry,
+    /// For the projection `camera`.
+    pub(crate) camera: Option<&'a types::Camera>,
+    pub(crate) settings: &'a PhotonSettings,
+}
+
+/// The scene's lists.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneLists {
+    pub(crate) resolution: u32,
+    pub(crate) view_count: u32,
+    views: BufferRef<[f32; 4]>,
+    /// Four words for each texel of each view (glsl/photon_lists/node.glsl).
+    pub(crate) pixels: BufferRef<u32>,
+    pub(crate) nodes: BufferRef<[u32; 4]>,
+    /// How many nodes there are, or would be if the pool held them.
+    pub(crate) node_count: BufferRef<u32>,
+    pub(crate) blocks: Blocks,
+}
+
+/// Occupied depths of blocks of texels, level by level.
+#[derive(Clone, Copy)]
+pub(crate) struct Blocks {
+    pub(crate) slices: BufferRef<[u32; 4]>,
+    pub(crate) top: u32,
+    /// The first block of each level, from level 1.
+    pub(crate) first_of_level: [u32; MOST_LEVELS],
+}
+
+impl SceneLists {
+    pub(crate) fn views(&self) -> TexelBuffer {
+        self.views.texels(vk::Format::R32G32B32A32_SFLOAT)
+    }
+
+    pub(crate) fn pixel_texels(&self) -> TexelBuffer {
+        self.pixels.texels(vk::Format::R32G32B32A32_UINT)
+    }
+
+    pub(crate) fn node_texels(&self) -> TexelBuffer {
+        self.nodes.texels(vk::Format::R32G32B32A32_UINT)
+    }
+}
+
+/// Declares the passes that make the lists.
+pub(crate) fn build(graph: &mut Graph<'_>, inputs: &ListInputs<'_>) -> SceneLists {
+    build_from(graph, inputs, NODES_PER_TEXEL)
+}
+
+/// As [`build`], with a pool of so many nodes for each texel at first.
+pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, nodes_per_texel: usize) -> SceneLists {
+    let resolution = inputs.settings.resolution;
+    let views = list_views(inputs.data, inputs.camera, inputs.settings);
+    let texels: Vec<[f32; 4]> = views.iter().flat_map(|view| view.texels.map(|texel| texel.to_array())).collect();
+    let depends = match inputs.settings.projection {
+        ListProjection::Camera => Dependence::CAMERA,
+        ListProjection::Scene => Dependence::GEOMETRY,
+    };
+    let view_count = views.len() as u32;
+    let pixel_count = (resolution * resolution) as usize * views.len();
+    let (top, first_of_level, block_count) = levels(resolution, view_count);
+    let per_texel = match inputs.settings.geometry {
+        PhotonGeometry::Lists => nodes_per_texel,
+        PhotonGeometry::Layers(count) => count as usize,
+    };
+    let lists = SceneLists {
+        resolution,
+        view_count,
+        views: graph.upload("photons.lists.views", &texels, depends),
+        pixels: graph.buffer("photons.lists.pixels", 4 * pixel_count),
+        nodes: graph.growing_buffer("photons.lists.nodes", (per_texel * pixel_count).max(1)),
+        node_count: graph.buffer("photons.lists.node_count", 1),
+        blocks: Blocks { slices: graph.buffer("photons.lists.blocks", block_count), top, first_of_level },
+    };
+    graph.fill_buffer("caustics/photons/lists-clear", lists.pixels, u32::MAX);
+    graph.fill_buffer("caustics/photons/lists-clear-count", lists.node_count, 0);
+    match inputs.settings.geometry {
+        PhotonGeometry::Lists => append(graph, inputs, &lists, &views),
+        PhotonGeometry::Layers(count) => layers::peel(graph, inputs, &lists, &views, count),
+    }
+    graph.grows(lists.nodes, lists.node_count, 0);
+    occupy(graph, &lists);
+    lists
+}
+
+/// Which instances a pass for opaque surfaces draws; the others are cut out by a texture's alpha.
+pub(super) fn is_solid(drawn: &DrawnInstance) -> bool {
+    !(drawn.masked && drawn.textured)
+}
+
+/// The coarsest level, where each level's blocks start, and how many there are.
+fn levels(resolution: u32, view_count: u32) -> (u32, [u32; MOST_LEVELS], usize) {
+    let side = |level: u32| resolution.div_ceil(1 << (LEVEL_BITS * level));
+    let top = (1..MOST_LEVELS as u32).take_while(|&level| side(level + 1) >= COARSEST).count() as u32 + 1;
+    let mut first_of_level = [0; MOST_LEVELS];
+    let mut count = 0;
+    for (level, first) in (1..=top).zip(&mut first_of_level) {
+        *first = count;
+        count += view_count * side(level) * side(level);
+    }
+    (top, first_of_level, count as usize)
+}
+
+/// A pass without attachments: every fragment goes into its texel's list, in whatever order.
+fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, views: &[ListView]) {
+    let ListInputs { data, geometry, .. } = *inputs;
+    let SceneLists { resolution, view_count, .. } = *lists;
+    let capacity = lists.nodes.count() as u32;
+    let draw_views = draw_views(views, resolution, |view_index| {
+        bytemuck::bytes_of(&AppendPush { view_index, view_count, resolution, capacity }).to_vec()
+    });
+    let area = [resolution, resolution * view_count];
+    let state = |attributes: Attributes| RasterState { depth: None, ..attributes.raster_state(data) };
+    let solid = Append {
+        instances: geometry.instances.clone(),
+        indices: geometry.indices.clone(),
+        positions: geometry.positions.clone(),
+        views: lists.views(),
+        pixels: lists.pixels.read_write(),
+        node_count: lists.node_count.read_write(),
+        nodes: lists.nodes.read_write(),
+        push: AppendPush { view_index: 0, view_count, resolution, capacity },
+    };
+    let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
+    let pass = graph.raster("caustics/photons/lists", solid, state(Attributes::Depth));
+    pass.note("views", u64::from(view_count))
+        .note("capacity", u64::from(capacity))
+        .count("nodes", lists.node_count, 0)
+        .area(area)
+        .draw(list);
+    if data.drawn.iter().all(is_solid) {
+        graph.skip("caustics/photons/lists-masked", "no surface cut out by its alpha");
+        return;
+    }
+    let cut = |drawn: &DrawnInstance| !is_solid(drawn);
+    let masked = AppendMasked {
+        instances: geometry.instances.clone(),
+        materials: geometry.materials.clone(),
+        indices: geometry.indices.clone(),
+        positions: geometry.positions.clone(),
+        material_textures: geometry.material_textures.clone(),
+        views: lists.views(),
+        pixels: lists.pixels.read_write(),
+        node_count: lists.node_count.read_write(),
+        nodes: lists.nodes.read_write(),
+        textures: data.texture_kinds(cut),
+        push: AppendMaskedPush { view_index: 0, view_count, resolution, capacity },
+    };
+    let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
+    let pass = graph.raster("caustics/photons/lists-masked", masked, state(Attributes::DepthMasked));
+    pass.count("nodes", lists.node_count, 0).area(area).draw(list);
+}
+
+pub(super) fn draw_views(views: &[ListView], resolution: u32, push: impl Fn(u32) -> Vec<u8>) -> Vec<DrawView> {
+    (0..).zip(views).map(|(index, view)| view.draw_view(index, resolution, push(index))).collect()
+}
+
+/// Which depths are occupied, for the march.
+fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
+    let SceneLists { resolution, view_count, blocks, .. } = *lists;
+    let threads = |level: u32| {
+        let side = resolution.div_ceil(1 << (LEVEL_BITS * level));
+        [view_count * side * side, 1, 1]
+    };
+    let finest = Occupancy {
+        views: lists.views(),
+        pixels: lists.pixel_texels(),
+        nodes: lists.node_texels(),
+        blocks: blocks.slices.read_write(),
+        push: OccupancyPush { resolution, view_count },
+    };
+    graph.pass("caustics/photons/lists-blocks.1", finest).threads(threads(1));
+    for level in 2..=blocks.top {
+        let first = |level: u32| blocks.first_of_level[level as usize - 1];
+        let push =
+            CoarserPush { resolution, view_count, level, first: first(level), first_finer: first(level - 1) };
+        let coarser = Coarser { blocks: blocks.slices.read_write(), push };
+        graph.pass(&format!("caustics/photons/lists-blocks.{level}"), coarser).threads(threads(level));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_end_where_four_blocks_stand_side_by_side() {
+        for (resolution, top) in [(16, 1), (64, 2), (100, 2), (128, 2), (256, 3), (1024, 4)] {
+            assert_eq!(levels(resolution, 3).0, top, "{resolution}");
+        }
+        assert_eq!(levels(128, 3), (2, [0, 3 * 32 * 32, 0, 0], 3 * (32 * 32 + 8 * 8)));
+    }
+}

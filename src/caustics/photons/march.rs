@@ -1,0 +1,45 @@
+//! Photon rays marched over the pixels of the scene's lists (glsl/photon_lists/march.comp).
+
+use ash::vk;
+
+use super::lists::SceneLists;
+use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::photon_lists::{March, MarchPush};
+
+/// Finds what the rays hit; `counts` holds how many there are. Returns the steps taken and the rays that hit nothing.
+pub(crate) fn trace(
+    graph: &mut Graph<'_>,
+    lists: &SceneLists,
+    rays: &PhotonRays,
+    counts: BufferRef<u32>,
+) -> BufferRef<u32> {
+    let words = vk::Format::R32G32B32A32_UINT;
+    let work = graph.buffer::<u32>(&format!("photons.march_work.{}", rays.stage), 2);
+    graph.fill_buffer(&format!("caustics/photons/march-clear.{}", rays.stage), work, 0);
+    let pass = March {
+        rays: rays.rays.texels(words),
+        views: lists.views(),
+        pixels: lists.pixel_texels(),
+        nodes: lists.node_texels(),
+        blocks: lists.blocks.slices.texels(words),
+        counts: counts.read(),
+        hits: rays.hits.write(),
+        work: work.read_write(),
+        push: MarchPush {
+            resolution: lists.resolution,
+            view_count: lists.view_count,
+            stage: rays.stage as u32,
+            capacity: rays.capacity,
+            top: lists.blocks.top,
+            first_of_level: lists.blocks.first_of_level,
+        },
+    };
+    graph
+        .pass(&format!("caustics/photons/march.{}", rays.stage), pass)
+        .count("steps", work, 0)
+        .count("misses", work, 1)
+        .threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
+    work
+}
