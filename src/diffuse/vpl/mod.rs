@@ -1,12 +1,17 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
+mod gather;
+mod sample;
+
+use ash::vk;
+
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews};
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
-use crate::graph::bindings::ImageRef;
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::VplSettings;
 
@@ -23,9 +28,17 @@ pub(crate) struct VplInputs<'a> {
     pub(crate) settings: &'a VplSettings,
 }
 
-/// Declares the method's passes in the order in which they run; returns the slot.
-pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Option<ImageRef> {
-    let _ = inputs;
-    graph.skip("diffuse/vpl", "not built yet");
-    None
+/// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
+pub(crate) struct Vpl {
+    pub(crate) diffuse: ImageRef,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) vpls: BufferRef<[f32; 4]>,
+}
+
+/// Declares the method's passes in the order in which they run.
+pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
+    let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
+    let vpls = sample::sample(graph, inputs);
+    gather::gather_pixels(graph, inputs, vpls, diffuse);
+    Vpl { diffuse, vpls }
 }
