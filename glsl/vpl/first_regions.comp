@@ -3,6 +3,8 @@
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "vpl/region_planes.glsl"
+#include "vpl/regions.glsl"
+#include "vpl/list.glsl"
 
 // The plane and the normals of one region of level 1, from its 2x2 pixels (vpl/region_planes.glsl). A pixel's plane is that of its triangle,
 //
@@ -19,15 +21,19 @@ layout(set = 0, binding = 4, rgba32ui) writeonly uniform uimage2D normals;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;              // pixels
+    int level_count;
     float depth_threshold;   // relative to the distance
     float normal_threshold;
 } push;
 
 Square square_of_pixel(ivec2 pixel) {
-    float pixel_depth = texelFetch(depth, pixel, 0).x;
+    float pixel_depth = is_inside(pixel, push.size) ? texelFetch(depth, pixel, 0).x : 0.0;
+    if (pixel_depth <= 0.0) {
+        return Square(vec4(0.0), vec3(0.0), vec3(0.0));
+    }
     uvec2 packed = texelFetch(surface, pixel, 0).xy;
     vec3 normal = unpack_direction(packed.x);
-    vec3 plane_normal = unpack_direction(packed.y);
+    vec3 plane_normal = packed.x == packed.y ? normal : unpack_direction(packed.y);
     vec2 ndc = ndc_of_pixel(pixel, push.size);
     bool orthographic = camera.depth_range > 0.0;
     vec3 ray = orthographic ? camera.forward : camera.forward + ndc.x * camera.right_scaled + ndc.y * camera.down_scaled;
@@ -40,16 +46,16 @@ Square square_of_pixel(ivec2 pixel) {
 
 void main() {
     ivec2 cell = pixel_of_invocation();
-    if (!is_inside(cell, push.size / 2)) {
-        return;
-    }
     Square quarters[4];
     for (int i = 0; i < 4; ++i) {
         quarters[i] = square_of_pixel(2 * cell + ivec2(i & 1, i >> 1));
     }
-    // An orthographic depth's unit is relative to nothing that is seen: half the image's width takes the place of the distance.
-    float scale = camera.depth_range > 0.0 ? length(camera.right_scaled) / camera.depth_range : 0.0;
-    Square region = merged(quarters, 1.0, push.depth_threshold, scale, push.normal_threshold);
-    imageStore(planes, cell, region.plane);
-    imageStore(normals, cell, pack_normals(region));
+    Square region = merged(quarters, 1.0, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
+    if (is_inside(cell, push.size / 2)) {
+        imageStore(planes, cell, region.plane);
+        imageStore(normals, cell, pack_normals(region));
+    }
+    if (LISTS != 0u) {
+        append_regions(valid_regions(quarters, region, push.level_count == 2), push.size, 1, cell);
+    }
 }

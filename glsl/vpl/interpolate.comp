@@ -5,19 +5,20 @@
 #include "lib/vectors.glsl"
 #include "vpl/regions.glsl"
 
-// Irradiance of one square of level l >= 1 that a larger region covers, from the level above (vpl/upsample.glsl). A level's squares read no
-// squares of that level which are written here: those that a larger region does not cover keep what was gathered.
+// Irradiance of the four squares of level l >= 1 that make up one flat region of level l + 1 (vpl/upsample.glsl). No square that is read
+// on level l is written here: those were gathered, because the region that they make up is not flat.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform sampler2D planes;
-layout(set = 0, binding = 1, rgba32f) uniform image2D irradiance;
+layout(set = 0, binding = 0) uniform sampler2D square_planes;
+layout(set = 0, binding = 1) uniform sampler2D region_planes;
+layout(set = 0, binding = 2, rgba32f) uniform image2D irradiance;
+layout(set = 0, binding = 3) uniform CameraBlock { Camera camera; };
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;              // pixels
     int level;
     float depth_threshold;
-    float depth_scale;
     float normal_threshold;
 } push;
 
@@ -25,16 +26,24 @@ vec4 irradiance_at(ivec2 texel) {
     return imageLoad(irradiance, texel);
 }
 
-float depth_of_square(int level, ivec2 cell) {
-    return texelFetch(planes, cell, level - 1).x;
+float depth_of_square(ivec2 cell) {
+    return texelFetch(square_planes, cell, 0).x;
 }
 
 #include "vpl/upsample.glsl"
 
 void main() {
-    ivec2 cell = pixel_of_invocation();
-    if (all(lessThan(cell, size_of_level(push.size, push.level))) && is_flat(planes, push.size, push.level + 1, cell / 2)) {
-        Upsampling by = Upsampling(push.size, push.level, push.depth_threshold, push.depth_scale, push.normal_threshold);
-        imageStore(irradiance, place_of_level(push.size, push.level) + cell, upsampled(by, cell));
+    ivec2 region = pixel_of_invocation();
+    if (!is_inside(region, size_of_level(push.size, push.level + 1))) {
+        return;
+    }
+    vec4 plane = texelFetch(region_planes, region, 0);
+    if (plane.x > 0.0) {
+        Upsampling by = Upsampling(push.size, push.level, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
+        Quarters quarters = upsampled(by, region, plane);
+        ivec2 first = place_of_level(push.size, push.level) + 2 * region;
+        for (int i = 0; i < 4; ++i) {
+            imageStore(irradiance, first + ivec2(i & 1, i >> 1), vec4(quarters.irradiance[i], quarters.normal));
+        }
     }
 }

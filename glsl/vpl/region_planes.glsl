@@ -12,6 +12,7 @@
 #ifndef VPL_REGION_PLANES
 #define VPL_REGION_PLANES
 
+
 struct Square {
     vec4 plane;        // as in vpl/regions.glsl, at the square's centre; 0: not flat
     vec3 low_normal;
@@ -30,7 +31,7 @@ Square unpack_square(vec4 plane, uvec4 normals) {
 }
 
 // `side`: of one of the four, in pixels; their order: (0,0), (1,0), (0,1), (1,1).
-Square merged(Square quarters[4], float side, float depth_threshold, float depth_scale, float normal_threshold) {
+Square merged(Square quarters[4], float side, float depth_threshold, float depth_unit, float normal_threshold) {
     Square whole = quarters[0];
     bool flat_ = whole.plane.x > 0.0;
     whole.plane.x += 0.5 * side * (whole.plane.y + whole.plane.z);
@@ -45,7 +46,7 @@ Square merged(Square quarters[4], float side, float depth_threshold, float depth
         whole.low_normal = min(whole.low_normal, quarter.low_normal);
         whole.high_normal = max(whole.high_normal, quarter.high_normal);
     }
-    flat_ = flat_ && whole.plane.w <= depth_threshold * (depth_scale > 0.0 ? depth_scale : whole.plane.x)
+    flat_ = flat_ && whole.plane.w <= depth_threshold * (depth_unit > 0.0 ? depth_unit : whole.plane.x)
             && max3(whole.high_normal - whole.low_normal) <= normal_threshold;
     if (!flat_ || whole.plane.x <= 0.0) {
         whole.plane = vec4(0.0);

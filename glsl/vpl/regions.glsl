@@ -11,6 +11,8 @@
 #ifndef VPL_REGIONS
 #define VPL_REGIONS
 
+#include "lib/scene.glsl"
+
 const int MOST_LEVELS = 7;
 
 ivec2 size_of_level(ivec2 size, int level) {
@@ -39,6 +41,11 @@ Region region_at(ivec2 size, ivec2 texel, int level_count) {
     }
     ivec2 cell = texel - place_of_level(size, level);
     return Region(all(lessThan(cell, size_of_level(size, level))) ? level : -1, cell);
+}
+
+// What a difference of depths is relative to: 0, the depth itself. An orthographic camera has no distance; half the image's width takes its place.
+float unit_of_depth(Camera camera) {
+    return camera.depth_range > 0.0 ? length(camera.right_scaled) / camera.depth_range : 0.0;
 }
 
 bool is_flat(sampler2D planes, ivec2 size, int level, ivec2 cell) {

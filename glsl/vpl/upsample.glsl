@@ -1,63 +1,85 @@
-// Irradiance of a square of level l inside a flat region of level l + 1 (Quyen 2014, alg. 3.2): bilinear between the regions of level l + 1
-// whose centres surround its own, of weights 9 : 3 : 3 : 1.
+// Irradiance of the four squares of level l that make up a flat region of level l + 1 (Quyen 2014, alg. 3.2): bilinear between the regions of
+// level l + 1 whose centres surround the square's, of weights 9 : 3 : 3 : 1.
 //
-// One of the other three that is not flat has no irradiance at its level; the square's own neighbour on that side, on level l, may have, which
-// lies closer: linear interpolation gives it half instead of a third of the square's own region's weight an axis. What lies on another surface
-// takes no part: its depth is off the plane, or its normal is another one. So nothing bleeds over edges, and where sizes
-// change there is no step.
+// A neighbour that is not flat has no irradiance at its level; its own quarters next to the region may have. They lie closer, three quarters of the
+// way: linear interpolation then gives them 1/2 instead of 1/3 of the region's weight an axis. What lies on another surface
+// takes no part: its depth is off the region's plane, or its normal is another one. So nothing bleeds over edges, and there
+// is no step where sizes change.
 //
-// The including file defines `vec4 irradiance_at(ivec2 texel)` of the flattened image, and `float depth_of_square(int level, ivec2 cell)`.
+// The including file defines `vec4 irradiance_at(ivec2 texel)` of the flattened image, rgb W/m², a the packed normal or 0, and
+// `float depth_of_square(ivec2 cell)` of level l, and binds `sampler2D region_planes`, level l + 1.
 
 struct Upsampling {
     ivec2 size;              // pixels
-    int level;               // of the square
+    int level;               // of the squares
     float depth_threshold;   // relative to the distance
-    float depth_scale;       // 0: relative to the depth itself
+    float depth_unit;        // unit_of_depth()
     float normal_threshold;
 };
 
-// Whether a place of depth `found` with the normal in `alpha` is on the plane that has the depth `expected` there.
-bool is_same_surface(Upsampling by, float found, float expected, float alpha, vec3 normal) {
-    vec3 turned = abs(normalize(unpack_direction_in_float_unnormalized(alpha)) - normal);
-    float tolerance = 2.0 * by.depth_threshold * (by.depth_scale > 0.0 ? by.depth_scale : expected);
-    return abs(found - expected) <= tolerance && max3(turned) <= 2.0 * by.normal_threshold;
+// The squares' irradiance, in the order (0,0), (1,0), (0,1), (1,1).
+struct Quarters {
+    vec3 irradiance[4];
+    float normal;            // of the region, packed
+};
+
+// Irradiance times weight, and weight, at a place `way` pixels from the region's centre; 0 on another surface.
+vec4 tap(Upsampling by, vec4 plane, vec3 normal, ivec2 texel, float depth_there, vec2 way, float weight) {
+    vec4 found = irradiance_at(texel);
+    float expected = plane.x + dot(plane.yz, way);
+    float tolerance = 2.0 * by.depth_threshold * (by.depth_unit > 0.0 ? by.depth_unit : expected);
+    vec3 turned = abs(unpack_direction_in_float_unnormalized(found.a) - normal);
+    bool same = found.a > 0.0 && depth_there > 0.0 && abs(depth_there - expected) <= tolerance
+                && max3(turned) <= 2.0 * by.normal_threshold;
+    return same ? weight * vec4(found.rgb, 1.0) : vec4(0.0);
 }
 
-// rgb: W/m²; a: the region's normal.
-vec4 upsampled(Upsampling by, ivec2 cell) {
-    int above = by.level + 1;
-    ivec2 parent = cell / 2;
-    ivec2 side = 2 * (cell & 1) - 1;
-    float extent = float(1 << by.level);
-    vec4 plane = texelFetch(planes, parent, above - 1);
-    vec4 own = irradiance_at(place_of_level(by.size, above) + parent);
-    vec3 normal = normalize(unpack_direction_in_float_unnormalized(own.a));
-    vec3 sum = own.rgb;
-    float weights = 1.0;
-    [[dont_unroll]] for (int i = 1; i < 4; ++i) {
-        ivec2 step = side * ivec2(i & 1, i >> 1);
-        bool diagonal = i == 3;
-        ivec2 other = parent + step;
-        float other_depth = all(greaterThanEqual(other, ivec2(0))) && all(lessThan(other, size_of_level(by.size, above)))
-                          ? texelFetch(planes, other, above - 1).x : 0.0;
-        vec2 way = 2.0 * extent * vec2(step);
-        float weight = diagonal ? 1.0 / 9.0 : 1.0 / 3.0;
-        ivec2 texel = place_of_level(by.size, above) + other;
-        if (other_depth <= 0.0) {
-            other = cell + step;
-            bool inside = all(greaterThanEqual(other, ivec2(0))) && all(lessThan(other, size_of_level(by.size, by.level)));
-            other_depth = inside ? depth_of_square(by.level, other) : 0.0;
-            way = extent * (0.5 * vec2(side) + vec2(step));
-            weight = diagonal ? 0.25 : 0.5;
-            texel = place_of_level(by.size, by.level) + other;
-        }
-        if (other_depth > 0.0) {
-            vec4 found = irradiance_at(texel);
-            if (found.a > 0.0 && is_same_surface(by, other_depth, plane.x + dot(plane.yz, way), found.a, normal)) {
-                sum += weight * found.rgb;
-                weights += weight;
+bool is_within(ivec2 cell, ivec2 size) {
+    return all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, size));
+}
+
+Quarters upsampled(Upsampling by, ivec2 region, vec4 plane) {
+    ivec2 regions = size_of_level(by.size, by.level + 1);
+    ivec2 squares = size_of_level(by.size, by.level);
+    ivec2 first_region = place_of_level(by.size, by.level + 1);
+    ivec2 first_square = place_of_level(by.size, by.level);
+    float side = float(1 << by.level);
+    vec4 own = irradiance_at(first_region + region);
+    vec3 normal = unpack_direction_in_float_unnormalized(own.a);
+    vec4 sums[4] = vec4[4](vec4(own.rgb, 1.0), vec4(own.rgb, 1.0), vec4(own.rgb, 1.0), vec4(own.rgb, 1.0));
+    [[dont_unroll]] for (int i = 0; i < 8; ++i) {
+        // The eight steps around the region.
+        int number = i + (i >> 2);
+        ivec2 step = ivec2(number % 3, number / 3) - 1;
+        ivec2 other = region + step;
+        float depth_there = is_within(other, regions) ? texelFetch(region_planes, other, 0).x : 0.0;
+        vec4 found = vec4(0.0);
+        if (depth_there > 0.0) {
+            float weight = step.x * step.y == 0 ? 1.0 / 3.0 : 1.0 / 9.0;
+            found = tap(by, plane, normal, first_region + other, depth_there, 2.0 * side * vec2(step), weight);
+        } else {
+            [[dont_unroll]] for (int quarter = 0; quarter < 2; ++quarter) {
+                // Towards the region on the axes of the step, both on the other one.
+                ivec2 towards = ivec2(
+                    step.x == 0 ? quarter : step.x < 0 ? 1 : 0, step.y == 0 ? quarter : step.y < 0 ? 1 : 0);
+                ivec2 square = 2 * other + towards;
+                if (is_within(square, squares)) {
+                    float weight = step.x * step.y == 0 ? 1.0 / 4.0 : 1.0 / 8.0;
+                    vec2 way = side * (vec2(2 * step + towards) - 0.5);
+                    found += tap(by, plane, normal, first_square + square, depth_of_square(square), way, weight);
+                }
             }
         }
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            ivec2 side_of_quarter = 2 * ivec2(quarter & 1, quarter >> 1) - 1;
+            bool takes = (step.x == 0 || step.x == side_of_quarter.x) && (step.y == 0 || step.y == side_of_quarter.y);
+            sums[quarter] += takes ? found : vec4(0.0);
+        }
     }
-    return vec4(sum / weights, own.a);
+    Quarters result;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        result.irradiance[quarter] = sums[quarter].rgb / sums[quarter].a;
+    }
+    result.normal = own.a;
+    return result;
 }

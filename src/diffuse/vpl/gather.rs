@@ -69,7 +69,7 @@ pub(super) fn gather_list(
             vpl_count: inputs.settings.count,
         },
     };
-    graph.pass("diffuse/vpl/gather-regions", pass).threads_indirect(list, 0);
+    graph.pass("diffuse/vpl/gather-regions", pass).count("regions", list, 3).threads_indirect(list, 0);
     irradiance
 }
 

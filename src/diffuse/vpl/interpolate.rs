@@ -18,32 +18,33 @@ pub(super) fn interpolate(
     let size = buffer.size;
     let (depth_threshold, normal_threshold) =
         (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
-    let depth_scale = 0.0;
+    let planes_of_level = |level: u32| pyramid.planes.mip(level - 1).sampled();
     for level in (1..pyramid.level_count - 1).rev() {
         let pass = Interpolate {
-            planes: pyramid.planes.sampled(),
+            square_planes: planes_of_level(level),
+            region_planes: planes_of_level(level + 1),
             irradiance: irradiance.read_write(),
+            camera: buffer.camera.clone(),
             push: InterpolatePush {
                 size: signed(size),
                 level: level.cast_signed(),
                 depth_threshold,
-                depth_scale,
                 normal_threshold,
             },
         };
-        graph
-            .pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass)
-            .pixels(size.map(|side| side >> level));
+        let regions = size.map(|side| side >> (level + 1));
+        graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);
     }
     let (specular, has_specular) = buffer.specular();
     let pass = Resolve {
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
         specular: specular.sampled(),
-        planes: pyramid.planes.sampled(),
+        region_planes: planes_of_level(1),
         irradiance: irradiance.sampled(),
         diffuse: diffuse.write(),
-        push: ResolvePush { depth_threshold, depth_scale, normal_threshold, has_specular },
+        camera: buffer.camera.clone(),
+        push: ResolvePush { depth_threshold, normal_threshold, has_specular },
     };
-    graph.pass("diffuse/vpl/resolve", pass).pixels(size);
+    graph.pass("diffuse/vpl/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
 }

@@ -60,10 +60,10 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         gather::gather_pixels(graph, inputs, vpls, diffuse);
         return made;
     }
-    let pyramid = pyramid::pyramid(graph, inputs, level_count);
-    let irradiance = if shading == VplShading::Compute {
-        let list = regions::list(graph, inputs, &pyramid, gather::REGIONS_PER_GROUP);
-        made.list = Some(list);
+    let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
+    let pyramid = pyramid::pyramid(graph, inputs, level_count, listed);
+    made.list = pyramid.list;
+    let irradiance = if let Some(list) = pyramid.list {
         gather::gather_list(graph, inputs, vpls, &pyramid, list)
     } else {
         let stencil = regions::mark(graph, inputs, &pyramid);

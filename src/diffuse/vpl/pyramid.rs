@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::VplInputs;
 use crate::graph::Graph;
-use crate::graph::bindings::ImageRef;
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::shaders::vpl::{FirstRegions, FirstRegionsPush, LargerRegions, LargerRegionsPush};
 use crate::vulkan::ImageInfo;
 
@@ -14,15 +14,29 @@ pub(super) struct Pyramid {
     pub(super) normals: ImageRef,
     /// Sizes of regions, pixels included; at least 2.
     pub(super) level_count: u32,
+    /// The valid regions (glsl/vpl/list.glsl), if they are asked for.
+    pub(super) list: Option<BufferRef<u32>>,
 }
 
-/// As many levels as the settings ask for and the image holds regions of.
+/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear.
+const LEAST_REGIONS: u32 = 16;
+/// Words of the list before its first region: three of an indirect dispatch, the length.
+const LIST_HEADER: usize = 4;
+
+/// As many levels as the settings ask for and the image is large enough for.
 pub(super) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
-    wanted.min(size[0].min(size[1]).max(1).ilog2() + 1)
+    let largest = size[0].min(size[1]) / LEAST_REGIONS;
+    wanted.min(largest.max(1).ilog2() + 1)
 }
 
-/// Declares the passes, one a level; `level_count` is at least 2.
-pub(super) fn pyramid(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, level_count: u32) -> Pyramid {
+/// Declares the passes, one a level; `level_count` is at least 2. `group_regions`: asks for the list of valid regions, for groups that gather for so
+/// many of them each.
+pub(super) fn pyramid(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    level_count: u32,
+    group_regions: Option<u32>,
+) -> Pyramid {
     let buffer = inputs.buffer;
     let size = buffer.size;
     let thresholds = (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
@@ -36,33 +50,51 @@ pub(super) fn pyramid(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, level_count
     };
     let planes = graph.image_with("vpl.planes", info(vk::Format::R32G32B32A32_SFLOAT));
     let normals = graph.image_with("vpl.normals", info(vk::Format::R32G32B32A32_UINT));
+    // Every region holds a pixel of its own.
+    let capacity = if group_regions.is_some() { size[0] as usize * size[1] as usize } else { 0 };
+    let list = graph.buffer::<u32>("vpl.list", LIST_HEADER + capacity);
+    graph.fill_buffer("diffuse/vpl/clear-list", list, 0);
+    let (lists, group_regions) = (u32::from(group_regions.is_some()), group_regions.unwrap_or(1));
     let pass = FirstRegions {
         camera: buffer.camera.clone(),
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
         planes: planes.mip(0).write(),
         normals: normals.mip(0).write(),
-        push: FirstRegionsPush { size: signed(size), depth_threshold, normal_threshold },
+        list: list.read_write(),
+        lists,
+        group_regions,
+        push: FirstRegionsPush {
+            size: signed(size),
+            level_count: level_count.cast_signed(),
+            depth_threshold,
+            normal_threshold,
+        },
     };
-    graph.pass("diffuse/vpl/regions-2", pass).pixels(size.map(|side| side / 2));
+    graph.pass("diffuse/vpl/regions-2", pass).pixels(size.map(|side| side.div_ceil(2)));
     for level in 2..level_count {
-        let regions = size.map(|side| side >> level);
         let pass = LargerRegions {
             camera: buffer.camera.clone(),
             quarter_planes: planes.mip(level - 2).sampled(),
             quarter_normals: normals.mip(level - 2).sampled(),
             planes: planes.mip(level - 1).write(),
             normals: normals.mip(level - 1).write(),
+            list: list.read_write(),
+            lists,
+            group_regions,
             push: LargerRegionsPush {
-                size: signed(regions),
-                side: (1_u32 << (level - 1)) as f32,
+                size: signed(size),
+                level: level.cast_signed(),
+                level_count: level_count.cast_signed(),
                 depth_threshold,
                 normal_threshold,
             },
         };
+        // Those that the image cuts off too: their quarters may be valid.
+        let regions = size.map(|side| (side >> (level - 1)).div_ceil(2));
         graph.pass(&format!("diffuse/vpl/regions-{}", 1 << level), pass).pixels(regions);
     }
-    Pyramid { planes, normals, level_count }
+    Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
 }
 
 pub(super) fn signed(size: [u32; 2]) -> [i32; 2] {
