@@ -42,8 +42,9 @@ void main() {
         Upsampling by = Upsampling(push.size, push.level, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
         Quarters quarters = upsampled(by, region, plane);
         ivec2 first = place_of_level(push.size, push.level) + 2 * region;
-        for (int i = 0; i < 4; ++i) {
-            imageStore(irradiance, first + ivec2(i & 1, i >> 1), vec4(quarters.irradiance[i], quarters.normal));
-        }
+        imageStore(irradiance, first, vec4(quarters.upper_left, quarters.normal));
+        imageStore(irradiance, first + ivec2(1, 0), vec4(quarters.upper_right, quarters.normal));
+        imageStore(irradiance, first + ivec2(0, 1), vec4(quarters.lower_left, quarters.normal));
+        imageStore(irradiance, first + ivec2(1, 1), vec4(quarters.lower_right, quarters.normal));
     }
 }

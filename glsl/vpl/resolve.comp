@@ -33,28 +33,37 @@ float depth_of_square(ivec2 cell) {
 
 #include "vpl/upsample.glsl"
 
+vec3 gathered_at(ivec2 pixel, ivec2 size) {
+    return is_inside(pixel, size) ? irradiance_at(pixel).rgb : vec3(0.0);
+}
+
+void store(ivec2 pixel, ivec2 size, vec3 received) {
+    if (is_inside(pixel, size)) {
+        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+        Surface point = unpack_surface(vec3(0.0), texelFetch(surface, pixel, 0), lobe);
+        imageStore(diffuse, pixel, vec4(received * (indirect_diffuse_albedo(point) * INVERSE_PI), 1.0));
+    }
+}
+
 void main() {
     ivec2 region = pixel_of_invocation();
     ivec2 size = imageSize(diffuse);
-    if (any(greaterThanEqual(2 * region, size))) {
+    ivec2 pixel = 2 * region;
+    if (!is_inside(pixel, size)) {
         return;
     }
     vec4 plane = is_inside(region, size / 2) ? texelFetch(region_planes, region, 0) : vec4(0.0);
     Quarters quarters;
     if (plane.x > 0.0) {
-        quarters = upsampled(Upsampling(size, 0, push.depth_threshold, unit_of_depth(camera), push.normal_threshold), region, plane);
+        Upsampling by = Upsampling(size, 0, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
+        quarters = upsampled(by, region, plane);
     } else {
-        for (int i = 0; i < 4; ++i) {
-            ivec2 pixel = 2 * region + ivec2(i & 1, i >> 1);
-            quarters.irradiance[i] = is_inside(pixel, size) ? irradiance_at(pixel).rgb : vec3(0.0);
-        }
+        quarters = Quarters(
+            gathered_at(pixel, size), gathered_at(pixel + ivec2(1, 0), size), gathered_at(pixel + ivec2(0, 1), size),
+            gathered_at(pixel + ivec2(1, 1), size), 0.0);
     }
-    for (int i = 0; i < 4; ++i) {
-        ivec2 pixel = 2 * region + ivec2(i & 1, i >> 1);
-        if (is_inside(pixel, size)) {
-            vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
-            Surface point = unpack_surface(vec3(0.0), texelFetch(surface, pixel, 0), lobe);
-            imageStore(diffuse, pixel, vec4(quarters.irradiance[i] * (indirect_diffuse_albedo(point) * INVERSE_PI), 1.0));
-        }
-    }
+    store(pixel, size, quarters.upper_left);
+    store(pixel + ivec2(1, 0), size, quarters.upper_right);
+    store(pixel + ivec2(0, 1), size, quarters.lower_left);
+    store(pixel + ivec2(1, 1), size, quarters.lower_right);
 }

@@ -17,9 +17,12 @@ struct Upsampling {
     float normal_threshold;
 };
 
-// The squares' irradiance, in the order (0,0), (1,0), (0,1), (1,1).
+// The squares' irradiance.
 struct Quarters {
-    vec3 irradiance[4];
+    vec3 upper_left;
+    vec3 upper_right;
+    vec3 lower_left;
+    vec3 lower_right;
     float normal;            // of the region, packed
 };
 
@@ -46,7 +49,10 @@ Quarters upsampled(Upsampling by, ivec2 region, vec4 plane) {
     float side = float(1 << by.level);
     vec4 own = irradiance_at(first_region + region);
     vec3 normal = unpack_direction_in_float_unnormalized(own.a);
-    vec4 sums[4] = vec4[4](vec4(own.rgb, 1.0), vec4(own.rgb, 1.0), vec4(own.rgb, 1.0), vec4(own.rgb, 1.0));
+    vec4 upper_left = vec4(own.rgb, 1.0);
+    vec4 upper_right = upper_left;
+    vec4 lower_left = upper_left;
+    vec4 lower_right = upper_left;
     [[dont_unroll]] for (int i = 0; i < 8; ++i) {
         // The eight steps around the region.
         int number = i + (i >> 2);
@@ -70,16 +76,12 @@ Quarters upsampled(Upsampling by, ivec2 region, vec4 plane) {
                 }
             }
         }
-        for (int quarter = 0; quarter < 4; ++quarter) {
-            ivec2 side_of_quarter = 2 * ivec2(quarter & 1, quarter >> 1) - 1;
-            bool takes = (step.x == 0 || step.x == side_of_quarter.x) && (step.y == 0 || step.y == side_of_quarter.y);
-            sums[quarter] += takes ? found : vec4(0.0);
-        }
+        upper_left += step.x <= 0 && step.y <= 0 ? found : vec4(0.0);
+        upper_right += step.x >= 0 && step.y <= 0 ? found : vec4(0.0);
+        lower_left += step.x <= 0 && step.y >= 0 ? found : vec4(0.0);
+        lower_right += step.x >= 0 && step.y >= 0 ? found : vec4(0.0);
     }
-    Quarters result;
-    for (int quarter = 0; quarter < 4; ++quarter) {
-        result.irradiance[quarter] = sums[quarter].rgb / sums[quarter].a;
-    }
-    result.normal = own.a;
-    return result;
+    return Quarters(
+        upper_left.rgb / upper_left.a, upper_right.rgb / upper_right.a, lower_left.rgb / lower_left.a,
+        lower_right.rgb / lower_right.a, own.a);
 }
