@@ -3,7 +3,7 @@
 use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, Settings, Slot};
 use crate::caustics::photons::{PhotonInputs, photons};
 use crate::diffuse::rsm::{Rsm, rsm};
-use crate::diffuse::vpl::{VplInputs, vpl};
+use crate::diffuse::vpl::{Vpl, VplInputs, vpl};
 use crate::frame::camera::camera;
 use crate::frame::compose::compose;
 use crate::frame::direct::shadow_map;
@@ -26,7 +26,7 @@ pub(crate) struct Declared {
     pub(crate) lights: Option<LightViews>,
     pub(crate) reflective: Option<ReflectiveViews>,
     pub(crate) rsm: Option<Rsm>,
-    pub(crate) vpl: Option<ImageRef>,
+    pub(crate) vpl: Option<Vpl>,
     pub(crate) caustics: Option<ImageRef>,
     direct: Option<ImageRef>,
     pub(crate) image: Option<ImageRef>,
@@ -39,7 +39,9 @@ impl Declared {
         match slot {
             Slot::Emission => self.gbuffer.emission,
             Slot::Direct => self.direct,
-            Slot::Diffuse => self.vpl.or(self.rsm.as_ref().map(|rsm| rsm.diffuse)),
+            Slot::Diffuse => {
+                self.vpl.as_ref().map(|vpl| vpl.diffuse).or(self.rsm.as_ref().map(|rsm| rsm.diffuse))
+            }
             Slot::Caustics => self.caustics,
             Slot::Specular => None,
         }
@@ -229,7 +231,7 @@ fn declare_diffuse(
             traced: frame.traced,
             settings: &settings.vpl,
         };
-        declared.vpl = vpl(graph, &inputs);
+        declared.vpl = Some(vpl(graph, &inputs));
     } else {
         declared.rsm = Some(rsm(graph, &declared.gbuffer, frame.set, lights, reflective, &settings.rsm));
     }

@@ -1,14 +1,22 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
+mod gather;
+mod interpolate;
+mod pyramid;
+mod regions;
+mod sample;
+
+use ash::vk;
+
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews};
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
-use crate::graph::bindings::ImageRef;
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
-use crate::renderer::VplSettings;
+use crate::renderer::{VplSettings, VplShading};
 
 /// What the method takes.
 pub(crate) struct VplInputs<'a> {
@@ -23,9 +31,46 @@ pub(crate) struct VplInputs<'a> {
     pub(crate) settings: &'a VplSettings,
 }
 
-/// Declares the method's passes in the order in which they run; returns the slot.
-pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Option<ImageRef> {
-    let _ = inputs;
-    graph.skip("diffuse/vpl", "not built yet");
-    None
+/// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
+pub(crate) struct Vpl {
+    pub(crate) diffuse: ImageRef,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) vpls: BufferRef<[f32; 4]>,
+    /// Where regions are marked in a stencil: how often the gather's shader ran.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) invocations: Option<BufferRef<u32>>,
+    /// Where regions are listed.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) list: Option<BufferRef<u32>>,
+}
+
+/// Declares the method's passes in the order in which they run.
+pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
+    let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
+    let vpls = sample::sample(graph, inputs);
+    let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
+    let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
+    let shading = match inputs.settings.shading {
+        _ if level_count == 1 => VplShading::Pixels,
+        VplShading::Auto if graph.runs_on_cpu() => VplShading::Compute,
+        VplShading::Auto => VplShading::Stencil,
+        chosen => chosen,
+    };
+    if shading == VplShading::Pixels {
+        gather::gather_pixels(graph, inputs, vpls, diffuse);
+        return made;
+    }
+    let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
+    let pyramid = pyramid::pyramid(graph, inputs, level_count, listed);
+    made.list = pyramid.list;
+    let irradiance = if let Some(list) = pyramid.list {
+        gather::gather_list(graph, inputs, vpls, &pyramid, list)
+    } else {
+        let stencil = regions::mark(graph, inputs, &pyramid);
+        let (irradiance, invocations) = gather::gather_stencil(graph, inputs, vpls, &pyramid, stencil);
+        made.invocations = Some(invocations);
+        irradiance
+    };
+    interpolate::interpolate(graph, inputs, &pyramid, irradiance, diffuse);
+    made
 }

@@ -1,0 +1,47 @@
+// Irradiance from all virtual point lights at two receivers, which share the loads of a light,
+//
+//   E(x) = Σ_k Φ_k/π · F_k(x) · V_k(x)      [W/m²]
+//
+// F the form factor of lib/vpl.glsl; V the visibility, if the including file defines, before it includes this one,
+//
+//   #define VPL_VISIBILITY
+//   float vpl_visibility(int k, Vpl vpl, vec3 position_rs, vec3 normal);
+//
+// which is asked only where F is above 0. The including file also binds `uniform samplerBuffer vpls`.
+#ifndef VPL_GATHER
+#define VPL_GATHER
+
+struct Receiver {
+    vec3 position_rs;
+    vec3 normal;   // 0: there is no receiver
+};
+
+float received_factor(int k, Vpl vpl, Receiver receiver) {
+    float factor = vpl_disc_form_factor(vpl, receiver.position_rs, receiver.normal);
+#ifdef VPL_VISIBILITY
+    if (factor > 0.0) {
+        factor *= vpl_visibility(k, vpl, receiver.position_rs, receiver.normal);
+    }
+#endif
+    return factor;
+}
+
+void gather(int vpl_count, Receiver a, Receiver b, out vec3 irradiance_a, out vec3 irradiance_b) {
+    irradiance_a = vec3(0.0);
+    irradiance_b = vec3(0.0);
+    for (int k = 0; k < vpl_count; ++k) {
+        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
+        irradiance_a += vpl.strength * received_factor(k, vpl, a);
+        irradiance_b += vpl.strength * received_factor(k, vpl, b);
+    }
+}
+
+void gather(int vpl_count, Receiver receiver, out vec3 irradiance) {
+    irradiance = vec3(0.0);
+    for (int k = 0; k < vpl_count; ++k) {
+        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
+        irradiance += vpl.strength * received_factor(k, vpl, receiver);
+    }
+}
+
+#endif

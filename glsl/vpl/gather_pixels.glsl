@@ -1,0 +1,49 @@
+// The body of gather_pixels*.comp: the slot of two pixels, eight columns apart. A file that defines `vpl_visibility` binds what it
+// needs for it from 6 on.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) uniform sampler2D depth;
+layout(set = 0, binding = 2) uniform usampler2D surface;
+layout(set = 0, binding = 3) uniform sampler2D specular;
+layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D diffuse;
+
+layout(push_constant, scalar) uniform Push {
+    uint vpl_count;
+    uint has_specular;  // 0: no material has a specular lobe, `specular` is not read
+} push;
+
+Receiver load_receiver(ivec2 pixel, ivec2 size, out vec3 response) {
+    response = vec3(0.0);
+    float pixel_depth = is_inside(pixel, size) ? texelFetch(depth, pixel, 0).x : 0.0;
+    if (pixel_depth <= 0.0) {
+        return Receiver(vec3(0.0), vec3(0.0));
+    }
+    vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
+    vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+    Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
+    response = indirect_diffuse_albedo(point) * INVERSE_PI;
+    return Receiver(position_rs, point.normal);
+}
+
+void main() {
+    ivec2 pixel = pixel_of_invocation(uvec2(16u, 8u));
+    ivec2 other = pixel + ivec2(8, 0);
+    ivec2 size = imageSize(diffuse);
+    vec3 response_a;
+    vec3 response_b;
+    Receiver a = load_receiver(pixel, size, response_a);
+    Receiver b = load_receiver(other, size, response_b);
+    vec3 irradiance_a = vec3(0.0);
+    vec3 irradiance_b = vec3(0.0);
+    if (max3(response_a) + max3(response_b) > 0.0) {
+        gather(int(push.vpl_count), a, b, irradiance_a, irradiance_b);
+    }
+    if (is_inside(pixel, size)) {
+        imageStore(diffuse, pixel, vec4(irradiance_a * response_a, 1.0));
+    }
+    if (is_inside(other, size)) {
+        imageStore(diffuse, other, vec4(irradiance_b * response_b, 1.0));
+    }
+}

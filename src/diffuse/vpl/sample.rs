@@ -1,0 +1,74 @@
+//! The virtual point lights of the first bounce: cells of the light views, of equal flux, with a jittered point in each.
+
+use ash::vk;
+
+use super::VplInputs;
+use crate::graph::bindings::BufferRef;
+use crate::graph::{Dependence, Graph};
+use crate::shaders::types::ViewShare;
+use crate::shaders::vpl::{BlockFlux, BlockFluxPush, BlockSums, Share, SharePush, Vpls, VplsPush};
+
+/// Side of a block of light-view texels (glsl/vpl/blocks.glsl); the atlas is a multiple of twice that.
+const BLOCK_SIDE: u32 = 8;
+const BLOCKS_PER_TILE: u32 = 4;
+
+/// How much of its cell a VPL may be anywhere in: 0 puts it at the medians, 1 is the paper's.
+const JITTER: f32 = 1.0;
+
+/// Declares the passes that make `settings.count` VPLs of two texels each (glsl/lib/vpl.glsl).
+pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef<[f32; 4]> {
+    let VplInputs { set, lights, reflective, .. } = inputs;
+    let (tile_count, view_count) = (set.atlas.tiles.len() as u32, set.atlas.views.len() as u32);
+    let vpl_count = inputs.settings.count;
+    let block_grid = set.atlas.size.map(|side| side.div_ceil(BLOCK_SIDE).max(1));
+    let tiles = graph.upload("vpl.tiles", &set.atlas.tiles, Dependence::LIGHTS);
+    let blocks = graph.image("vpl.blocks", vk::Format::R32G32B32A32_SFLOAT, block_grid);
+    let sums = graph.image("vpl.sums", vk::Format::R32G32B32A32_SFLOAT, block_grid);
+    let view_fluxes = graph.buffer::<[f32; 4]>("vpl.view_fluxes", view_count as usize);
+    let shares = graph.buffer::<ViewShare>("vpl.shares", view_count as usize);
+    let vpls = graph.buffer::<[f32; 4]>("vpl.vpls", 2 * vpl_count as usize);
+
+    let pass = BlockFlux {
+        tiles: tiles.read(),
+        views: lights.views.clone(),
+        light_depth: lights.depth.sampled(),
+        light_normal: reflective.normal.sampled(),
+        light_flux: reflective.flux.sampled(),
+        blocks: blocks.write(),
+        push: BlockFluxPush { tile_count },
+    };
+    graph.pass("diffuse/vpl/block-flux", pass).note("tiles", u64::from(tile_count)).threads([
+        tile_count * BLOCKS_PER_TILE,
+        1,
+        1,
+    ]);
+
+    let pass = BlockSums {
+        views: lights.views.clone(),
+        blocks: blocks.sampled(),
+        sums: sums.read_write(),
+        view_fluxes: view_fluxes.write(),
+    };
+    graph.pass("diffuse/vpl/block-sums", pass).groups([view_count, 1, 1]);
+
+    let pass = Share {
+        view_fluxes: view_fluxes.read(),
+        shares: shares.read_write(),
+        push: SharePush { view_count, vpl_count },
+    };
+    graph.pass("diffuse/vpl/share", pass).note("views", u64::from(view_count)).groups([1, 1, 1]);
+
+    let pass = Vpls {
+        views: lights.views.clone(),
+        light_depth: lights.depth.sampled(),
+        light_normal: reflective.normal.sampled(),
+        light_flux: reflective.flux.sampled(),
+        sums: sums.sampled(),
+        shares: shares.read(),
+        vpls: vpls.write(),
+        jitter: std::env::var("JITTER").map_or(JITTER, |j| j.parse().unwrap()),
+        push: VplsPush { view_count, vpl_count },
+    };
+    graph.pass("diffuse/vpl/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
+    vpls
+}
