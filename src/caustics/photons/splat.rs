@@ -93,7 +93,7 @@ impl Grid {
             }
         }
         let level_count = i32::try_from(levels.len()).unwrap_or(i32::MAX);
-        let levels = graph.upload("photons.levels", &levels, Dependence::NONE);
+        let levels = graph.upload("photons.splat_levels", &levels, Dependence::NONE);
         Grid { size, levels, level_count, row_count, cell_count }
     }
 
