@@ -3,6 +3,7 @@
 #include "lib/lights.glsl"
 #include "light_views/flux.glsl"
 #include "photons/arrivals.glsl"
+#include "photons/beam.glsl"
 #include "photons/choice.glsl"
 #include "photons/medium.glsl"
 #include "photons/random.glsl"
@@ -33,6 +34,8 @@ layout(set = 0, binding = 10) uniform usampler2D specular_layer;
 layout(set = 0, binding = 11) uniform usamplerBuffer materials;
 layout(set = 0, binding = 12) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
 layout(set = 0, binding = 13) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
+
+layout(set = 0, binding = 14) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint tiles_per_row;
@@ -98,6 +101,23 @@ vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, v
     return origin + ray * clamp(z, middle_z - reach, middle_z + reach);
 }
 
+// The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface.
+vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
+    if (texelFetch(specular_layer, texel, 0).y != material || texelFetch(mask, texel, 0).x <= 0.0) {
+        return own;
+    }
+    vec3 normal = unpack_direction(texelFetch(specular_surface, texel, 0).x);
+    return dot(normal, own) > 0.7 ? normal : own;
+}
+
+// The change of the shading normal from one texel to the next along `step`, from those on both sides that are of the same surface.
+vec3 normal_change(ivec2 texel, ivec2 step, uint material, vec3 own) {
+    vec3 after = normal_beside(texel + step, material, own);
+    vec3 before = normal_beside(texel - step, material, own);
+    float sides = float(after != own) + float(before != own);
+    return (after - before) / max(sides, 1.0);
+}
+
 void main() {
     uint photon = gl_GlobalInvocationID.x;
     if (photon >= texelFetch(choice, int(CHOICE_PHOTONS)).x) {
@@ -141,6 +161,28 @@ void main() {
     arrivals[3u * photon + 2u] = uvec4(floatBitsToUint(flux), number);
     // Views round the corners of what they draw to 1/256 of a texel.
     float gap = gap_at(position, push.radius) + texel_width / 64.0;
+    // One photon to the next.
+    float spacing = exp2(float(level) - float(split));
+    vec3 face = unpack_direction(surface.y);
+    vec3 own = unpack_direction(surface.x);
+    vec3 origin_change[2];
+    vec3 direction_change[2];
+    vec3 normals[2];
+    [[dont_unroll]] for (int axis = 0; axis < 2; ++axis) {
+        vec2 step = vec2(axis == 0, axis == 1) * view.tangent_step;
+        vec3 origins = position_on_texel(view, middle, tangent + step, depth, face) - position_on_texel(view, middle, tangent - step, depth, face);
+        vec3 directions = normalize(ray_of_tangent(view, tangent + step)) - normalize(ray_of_tangent(view, tangent - step));
+        origin_change[axis] = origins * (0.5 * spacing);
+        direction_change[axis] = directions * (0.5 * spacing);
+        normals[axis] = normal_change(texel, ivec2(axis == 0, axis == 1), layer.y, own) * spacing;
+    }
+    vec4 beam[3] = pack_beam(Beam(origin_change[0], origin_change[1], direction_change[0], direction_change[1]));
+    uint first = ARRIVAL_BEAM_TEXELS * photon;
+    arrival_beams[first] = beam[0];
+    arrival_beams[first + 1u] = beam[1];
+    arrival_beams[first + 2u] = beam[2];
+    arrival_beams[first + 3u] = vec4(normals[0], normals[1].x);
+    arrival_beams[first + 4u] = vec4(normals[1].yz, 0.0, 0.0);
     surfaces[2u * photon] = surface;
     surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), 0u);
 }

@@ -1,15 +1,18 @@
 // What happens where a photon meets a surface: it lands if there is a diffuse lobe, and goes on if there are specular ones. Both take
 // the whole flux that arrives: what each sends out is its own factor's business.
 //
-// The disc that a landed photon is spread over has the radius h = C√(A/N), C = C₀/√p, p = cosθ/d² (Quyen 2014, section 3.3.2.3), with d
-// over the scene's radius R so that C₀ has no unit:
+// The disc that a landed photon is spread over has one of two radii [m], at most R/4:
 //
-//   h = C₀·√(A/N) · d/(R·√cosθ) [m], at most R/4
+//   h = C₀·√(A/N) · d/(R·√cosθ)      Quyen 2014, section 3.3.2.3: h = C√(A/N), C = C₀/√p, p = cosθ/d², with d over the scene's radius R so
+//                                    that C₀ has no unit; A the area of the scene, N the photons sent out, d the way from the light
+//   h = C₀·√(8a/(π·cosθ))            a the area between neighbouring photons across the ray (photons/beam.glsl): for C₀ = 1, on the middle of the
+//                                    Gaussian disc as many photons count as if four were spread evenly
 //
-// A the area of the scene, N the photons sent out, d the way from the light, θ the angle of incidence.
+// θ the angle of incidence.
 
 #include "photons/append.glsl"
 #include "photons/arrivals.glsl"
+#include "photons/beam.glsl"
 #include "photons/choice.glsl"
 #include "photons/medium.glsl"
 #include "photons/surface_texel.glsl"
@@ -25,6 +28,9 @@ layout(set = 0, binding = 6) writeonly buffer SurfaceBlock { uvec4 surfaces[]; }
 layout(set = 0, binding = 7) buffer CountBlock { uint counts[]; };
 layout(set = 0, binding = 8) buffer ArrivalCountBlock { uint arrival_counts[]; };
 
+layout(set = 0, binding = 16) uniform samplerBuffer beams;
+layout(set = 0, binding = 17) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
+
 layout(push_constant, scalar) uniform Push {
     vec3 shift;          // from render space to that of the traced scene
     uint stage;
@@ -33,7 +39,8 @@ layout(push_constant, scalar) uniform Push {
     uint capacity;       // of the lists of arrivals
     uint landed_capacity;
     float radius;        // of the scene, m
-    float disc_scale;    // C₀·√A/R
+    float disc_scale;    // C₀·√A/R, or C₀ where beams decide
+    uint beams_decide;
 } push;
 
 // Where a photon is, and what it met there.
@@ -41,6 +48,8 @@ struct Landing {
     PhotonRay photon;   // its flux and way at arrival, its origin the point of arrival
     vec3 normal;        // geometric, on the arriving side
     vec3 shading_normal;
+    Beam beam;          // at the surface
+    float beam_area;    // across the ray, m²
     bool front;
     Material material;
 };
@@ -55,6 +64,18 @@ Landing arrive(uint index, uvec4 hit) {
     landing.normal = landing.front ? face : -face;
     landing.shading_normal = landing.normal;
     landing.photon.origin_rs += landing.photon.direction * distance;
+    Beam beam = load_beam(beams, int(RAY_BEAM_TEXELS * index));
+    beam.origin_u += distance * beam.direction_u;
+    beam.origin_v += distance * beam.direction_v;
+    float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
+    float spread = unpackHalf2x16(landing.photon.bits >> 16).x * distance;
+    landing.beam_area = beam_area(beam, landing.photon.direction, spread * spread / emitted);
+    // Along their own rays to the plane of the surface.
+    float slope = dot(landing.photon.direction, landing.normal);
+    vec3 along = landing.photon.direction / min(slope, -1e-2);
+    beam.origin_u -= along * dot(beam.origin_u, landing.normal);
+    beam.origin_v -= along * dot(beam.origin_v, landing.normal);
+    landing.beam = beam;
     landing.photon.travelled += distance;
     landing.photon.flux *= transmittance_behind(landing.material, landing.front, distance);
     return landing;
@@ -63,7 +84,10 @@ Landing arrive(uint index, uvec4 hit) {
 float disc_radius(Landing landing) {
     float cosine = max(-dot(landing.normal, landing.photon.direction), 1e-3);
     float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
-    return clamp(push.disc_scale * inversesqrt(emitted * cosine) * landing.photon.travelled, 1e-6 * push.radius, 0.25 * push.radius);
+    float of_way = inversesqrt(emitted * cosine) * landing.photon.travelled;
+    float of_beam = sqrt(8.0 * INVERSE_PI * landing.beam_area / max(cosine, 0.05));
+    float radius = push.disc_scale * (push.beams_decide != 0u ? of_beam : of_way);
+    return clamp(radius, 1e-6 * push.radius, 0.25 * push.radius);
 }
 
 // All invocations of the subgroup come here; `met`: there is a surface.
@@ -92,6 +116,14 @@ void land(bool met, Landing landing, MaterialPoint point) {
         arrivals[3u * place] = uvec4(floatBitsToUint(photon.origin_rs), floatBitsToUint(photon.travelled));
         arrivals[3u * place + 1u] = uvec4(floatBitsToUint(photon.direction), photon.bits);
         arrivals[3u * place + 2u] = uvec4(floatBitsToUint(photon.flux), photon.seed);
+        vec4 packed_beam[3] = pack_beam(landing.beam);
+        uint first = ARRIVAL_BEAM_TEXELS * place;
+        arrival_beams[first] = packed_beam[0];
+        arrival_beams[first + 1u] = packed_beam[1];
+        arrival_beams[first + 2u] = packed_beam[2];
+        // As if the surface were flat: nobody knows its curvature here.
+        arrival_beams[first + 3u] = vec4(0.0);
+        arrival_beams[first + 4u] = vec4(0.0);
         surfaces[2u * place] = uvec4(
             pack_direction(landing.shading_normal), pack_direction(landing.normal), pack_root_color(lobes.f0), pack_root_color(transmission));
         surfaces[2u * place + 1u] = uvec4(

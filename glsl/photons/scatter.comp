@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "photons/append.glsl"
 #include "photons/arrivals.glsl"
+#include "photons/beam.glsl"
 #include "photons/random.glsl"
 #include "photons/surface_texel.glsl"
 #include "path/lobes.glsl"
@@ -25,6 +26,9 @@ layout(set = 0, binding = 2) uniform usamplerBuffer arrival_counts;
 layout(set = 0, binding = 3) writeonly buffer RayBlock { uvec4 rays[]; };
 layout(set = 0, binding = 4) buffer CountBlock { uint counts[]; };
 
+layout(set = 0, binding = 5) uniform samplerBuffer arrival_beams;
+layout(set = 0, binding = 6) writeonly buffer BeamBlock { vec4 beams[]; };
+
 layout(push_constant, scalar) uniform Push {
     uint stage;
     uint capacity;
@@ -33,7 +37,34 @@ layout(push_constant, scalar) uniform Push {
 // Directions nearer to the surface than this do not gain by the adjoint without bound.
 const float GRAZING = 0.01;
 
-bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer) {
+// The standard deviation of a lobe's directions in one dimension over α: half of GGX's slopes are below α, and a mirrored direction turns by twice
+// the angle.
+const float LOBE_SPREAD = 1.7;
+
+void widen(inout PhotonRay photon, float spread) {
+    float before = unpackHalf2x16(photon.bits >> 16).x;
+    photon.bits = (photon.bits & 0xFFFFu) | packHalf2x16(vec2(max(before, spread), 0.0)) << 16;
+}
+
+// How the neighbours of a photon that arrived go on.
+Beam scattered_beam(uint index, vec3 arriving, vec3 normal, bool refracted, float relative_ior) {
+    int first = int(ARRIVAL_BEAM_TEXELS * index);
+    Beam beam = load_beam(arrival_beams, first);
+    vec4 a = texelFetch(arrival_beams, first + 3);
+    vec4 b = texelFetch(arrival_beams, first + 4);
+    vec3 normal_u = a.xyz;
+    vec3 normal_v = vec3(a.w, b.xy);
+    if (!refracted) {
+        beam.direction_u = reflected_change(arriving, normal, beam.direction_u, normal_u);
+        beam.direction_v = reflected_change(arriving, normal, beam.direction_v, normal_v);
+    } else if (relative_ior != 1.0) {
+        beam.direction_u = refracted_change(arriving, normal, 1.0 / relative_ior, beam.direction_u, normal_u);
+        beam.direction_v = refracted_change(arriving, normal, 1.0 / relative_ior, beam.direction_v, normal_v);
+    }
+    return beam;
+}
+
+bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out Beam beam) {
     vec2 packed_layer = unpackUnorm2x16(layer.x);
     Matter matter = Matter(
         vec3(0.0), unpack_root_color(surface.z), packed_layer.x, max(packed_layer.y * packed_layer.y, MINIMUM_ALPHA),
@@ -65,6 +96,8 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer) {
     if (side < 0.0 && matter.relative_ior != 1.0) {
         photon.bits ^= PHOTON_INSIDE;
     }
+    beam = scattered_beam(index, photon.direction, frame.normal, drawn.direction.z < 0.0, matter.relative_ior);
+    widen(photon, LOBE_SPREAD * matter.alpha);
     photon.origin_rs += (side > 0.0 ? geometric_normal : -geometric_normal) * uintBitsToFloat(layer.z);
     photon.direction = normalize(direction);
     photon.flux = flux;
@@ -75,9 +108,10 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     bool wanted = index < texelFetch(arrival_counts, int(push.stage * STAGE_WORDS + COUNT_WORD)).x;
     PhotonRay photon;
+    Beam beam;
     if (wanted) {
         photon = load_photon_ray(arrivals, index);
-        wanted = scatter(photon, texelFetch(surfaces, 2 * int(index)), texelFetch(surfaces, 2 * int(index) + 1));
+        wanted = scatter(photon, texelFetch(surfaces, 2 * int(index)), texelFetch(surfaces, 2 * int(index) + 1), index, beam);
     }
     uint place;
     APPEND(counts, push.stage, wanted, place)
@@ -85,5 +119,9 @@ void main() {
         rays[3u * place] = uvec4(floatBitsToUint(photon.origin_rs), floatBitsToUint(photon.travelled));
         rays[3u * place + 1u] = uvec4(floatBitsToUint(photon.direction), photon.bits);
         rays[3u * place + 2u] = uvec4(floatBitsToUint(photon.flux), photon.seed);
+        vec4 packed_beam[3] = pack_beam(beam);
+        beams[RAY_BEAM_TEXELS * place] = packed_beam[0];
+        beams[RAY_BEAM_TEXELS * place + 1u] = packed_beam[1];
+        beams[RAY_BEAM_TEXELS * place + 2u] = packed_beam[2];
     }
 }

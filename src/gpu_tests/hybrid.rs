@@ -28,11 +28,21 @@ fn variants() -> Vec<Settings> {
         variant(Preset::High, &[("vpl.bounces", "3")]),
         variant(
             Preset::Default,
-            &[("vpl.visibility", "ism"), ("vpl.shading", "stencil"), ("photons.trace", "march"), ("photons.splat", "discs")],
+            &[
+                ("vpl.visibility", "ism"),
+                ("vpl.shading", "stencil"),
+                ("photons.trace", "march"),
+                ("photons.splat", "discs"),
+            ],
         ),
         variant(
             Preset::Paper,
-            &[("vpl.shading", "pixels"), ("photons.geometry", "layers:2"), ("photons.splat", "tiles"), ("photons.downscale", "2")],
+            &[
+                ("vpl.shading", "pixels"),
+                ("photons.geometry", "layers:2"),
+                ("photons.splat", "tiles"),
+                ("photons.downscale", "2"),
+            ],
         ),
     ]
 }
@@ -168,7 +178,8 @@ fn any_budget_and_any_size_will_do() {
     let camera = scene.camera_view(None).expect("its camera");
     for budget in ["0", "1", "1000000"] {
         for trace in ["bvh", "march", "lines"] {
-            let settings = hybrid(Preset::Default, &[("photons.max", budget), ("photons.trace", trace), ("vpl.count", "32")]);
+            let settings =
+                hybrid(Preset::Default, &[("photons.max", budget), ("photons.trace", trace), ("vpl.count", "32")]);
             let frame = session.render(&scene, &settings, &request([32, 24], camera.clone(), &Slot::ALL));
             assert_sound(&format!("{budget} photons, {trace}"), &frame);
             assert_eq!(mean(&frame.slots[&Slot::Caustics]) > 0.0, budget != "0", "{budget} photons, {trace}");

@@ -45,12 +45,7 @@ impl<'s> Bench<'s> {
     }
 
     /// π·L of a white diffuse surface, which is E, and the passes.
-    fn run(
-        &mut self,
-        settings: &PhotonSettings,
-        photons: &[Landed],
-        timing: Timing,
-    ) -> (Vec<DVec3>, Vec<PassTiming>) {
+    fn run(&mut self, settings: &PhotonSettings, photons: &[Landed], timing: Timing) -> (Vec<DVec3>, Vec<PassTiming>) {
         let mut graph = Graph::new(&mut self.store);
         let geometry = Geometry::import(&mut graph, &self.data);
         let view = View { camera: self.camera, size: self.size, sky: [0.0; 3], emission: false };

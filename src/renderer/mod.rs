@@ -32,8 +32,9 @@ pub use context::Context;
 pub use error::Error;
 pub use frame::{ColorImage, Estimate, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
 pub use options::{
-    LightSettings, ListProjection, PathSettings, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting,
-    PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading, VplVisibility,
+    LightSettings, ListProjection, PathSettings, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings,
+    PhotonSplatting, PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading,
+    VplVisibility,
 };
 pub use render::Renderer;
 pub use settings::{

@@ -175,6 +175,16 @@ choices! {
     }
 }
 
+choices! {
+    /// What decides the radius of a photon's disc.
+    PhotonFootprint {
+        /// The way from the light and the number of photons: the paper.
+        Way = "way",
+        /// How far apart neighbouring photons land: ray differentials.
+        Beam = "beam",
+    }
+}
+
 /// What stands for the scene where photons are not traced through its hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhotonGeometry {
@@ -231,7 +241,9 @@ pub struct PhotonSettings {
     pub downscale: u32,
     /// How a photon's flux is spread.
     pub kernel: PhotonKernel,
-    /// C₀ of the radius h = C₀·√(A/N)·d/(R·√cosθ): A the scene's area in m², N the photons' number, d the way from the light in metres, R the
-    /// scene's radius, θ the angle of incidence; 0.01 to 100.
+    /// What decides the radius of its disc.
+    pub footprint: PhotonFootprint,
+    /// C₀ of the radius; 0.01 to 100. `way`: h = C₀·√(A/N)·d/(R·√cosθ), A the scene's area in m², N the photons' number, d the way from the
+    /// light in metres, R the scene's radius, θ the angle of incidence. `beam`: h = C₀·√(8a/(π·cosθ)), a the area between neighbours.
     pub radius: f64,
 }

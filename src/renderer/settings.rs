@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::options::{
-    LightSettings, ListProjection, PathSettings, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting,
-    PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading, VplVisibility, choices,
+    LightSettings, ListProjection, PathSettings, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings,
+    PhotonSplatting, PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading,
+    VplVisibility, choices,
 };
 use super::slots::Slot;
 use crate::reference::{CausticPaths, PixelFilter};
@@ -311,6 +312,7 @@ impl Settings {
                 splat: PhotonSplatting::Auto,
                 downscale: 1,
                 kernel: PhotonKernel::Gaussian,
+                footprint: PhotonFootprint::Beam,
                 radius: 1.0,
             },
             path: PathSettings { spp: 64, bounces: None, filter: PixelFilter::Center, seed: 0 },
@@ -323,7 +325,7 @@ impl Settings {
                 traced: TracedSettings { samples: 1 },
                 rsm: RsmSettings { vpls: 64 },
                 vpl: VplSettings { count: 64, ..default.vpl },
-                photons: PhotonSettings { max: 9_500, downscale: 2, radius: 2.0, ..default.photons },
+                photons: PhotonSettings { max: 9_500, downscale: 2, ..default.photons },
                 path: PathSettings { spp: 16, ..default.path },
                 ..default
             },
@@ -338,7 +340,7 @@ impl Settings {
                 traced: TracedSettings { samples: 16 },
                 rsm: RsmSettings { vpls: 1024 },
                 vpl: VplSettings { count: 512, bounces: 4, visibility: VplVisibility::Traced, ..default.vpl },
-                photons: PhotonSettings { max: 200_000, bounces: 4, radius: 0.5, ..default.photons },
+                photons: PhotonSettings { max: 200_000, bounces: 4, ..default.photons },
                 path: PathSettings { spp: 256, ..default.path },
                 ..default
             },
@@ -354,6 +356,7 @@ impl Settings {
                     projection: ListProjection::Camera,
                     splat: PhotonSplatting::Discs,
                     downscale: 4,
+                    footprint: PhotonFootprint::Way,
                     ..default.photons
                 },
                 ..default

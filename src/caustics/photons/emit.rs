@@ -14,12 +14,15 @@ use crate::shaders::photons::{Emit, EmitPush, Scatter, ScatterPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const WORDS: vk::Format = vk::Format::R32_UINT;
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Photons that reached a specular surface (glsl/photons/arrivals.glsl).
 #[derive(Clone, Copy)]
 pub(crate) struct Arrivals {
     pub(crate) arrivals: BufferRef<[u32; 4]>,
     pub(crate) surfaces: BufferRef<[u32; 4]>,
+    /// How the photons beside each run (glsl/photons/beam.glsl).
+    pub(crate) beams: BufferRef<[f32; 4]>,
 }
 
 impl Arrivals {
@@ -27,6 +30,7 @@ impl Arrivals {
         Arrivals {
             arrivals: graph.buffer("photons.arrivals", 3 * capacity as usize),
             surfaces: graph.buffer("photons.surfaces", 2 * capacity as usize),
+            beams: graph.buffer("photons.arrival_beams", 5 * capacity as usize),
         }
     }
 }
@@ -66,6 +70,7 @@ pub(crate) fn emit(
         materials: inputs.geometry.materials.clone(),
         arrivals: made.arrivals.write(),
         surfaces: made.surfaces.write(),
+        arrival_beams: made.beams.write(),
         push: EmitPush { tiles_per_row, radius: inputs.data.radius as f32 },
     };
     graph.pass("caustics/photons/emit", pass).threads_indirect(choice.choice, CHOICE_EMIT);
@@ -84,6 +89,8 @@ pub(crate) fn scatter(
         surfaces: arrived.surfaces.texels(RECORDS),
         arrival_counts: choice.arrival_counts.texels(WORDS),
         rays: rays.rays.write(),
+        arrival_beams: arrived.beams.texels(FLOATS),
+        beams: rays.beams.write(),
         counts: choice.counts.read_write(),
         specular_lobes: 1,
         transmissive: u32::from(inputs.facts.transmissive),

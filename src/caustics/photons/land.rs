@@ -9,10 +9,12 @@ use super::emit::Arrivals;
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::reference::traced_scene::{TracedBindings, TracedScene};
+use crate::renderer::PhotonFootprint;
 use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const WORDS: vk::Format = vk::Format::R32_UINT;
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Lands the photons of a stage. `scene`: what they were traced through, where that was triangles.
 pub(crate) fn land(
@@ -36,7 +38,11 @@ pub(crate) fn land(
         capacity: rays.capacity,
         landed_capacity: landed.capacity,
         radius: data.radius as f32,
-        disc_scale: (inputs.settings.radius * data.area.sqrt() / data.radius) as f32,
+        disc_scale: match inputs.settings.footprint {
+            PhotonFootprint::Way => (inputs.settings.radius * data.area.sqrt() / data.radius) as f32,
+            PhotonFootprint::Beam => inputs.settings.radius as f32,
+        },
+        beams_decide: u32::from(inputs.settings.footprint == PhotonFootprint::Beam),
     };
     let pass = match scene {
         None => graph.pass(
@@ -49,6 +55,8 @@ pub(crate) fn land(
                 photons,
                 arrivals: next.arrivals.write(),
                 surfaces: next.surfaces.write(),
+                beams: rays.beams.texels(FLOATS),
+                arrival_beams: next.beams.write(),
                 counts: choice.counts.read_write(),
                 arrival_counts: choice.arrival_counts.read_write(),
                 push,
@@ -64,6 +72,8 @@ pub(crate) fn land(
                 photons,
                 arrivals: next.arrivals.write(),
                 surfaces: next.surfaces.write(),
+                beams: rays.beams.texels(FLOATS),
+                arrival_beams: next.beams.write(),
                 counts: choice.counts.read_write(),
                 arrival_counts: choice.arrival_counts.read_write(),
                 triangles: bindings.triangles.clone(),
@@ -85,6 +95,7 @@ pub(crate) fn land(
                     landed_capacity: push.landed_capacity,
                     radius: push.radius,
                     disc_scale: push.disc_scale,
+                    beams_decide: push.beams_decide,
                 },
             },
         ),

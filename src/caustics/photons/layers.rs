@@ -1,7 +1,7 @@
 //! The nearest surfaces of each texel by depth peeling (Krüger et al. 2006).
 
-use super::lists::{ListInputs, SceneLists};
 use super::list_views::ListView;
+use super::lists::{ListInputs, SceneLists};
 use crate::graph::Graph;
 
 pub(super) fn peel(

@@ -203,8 +203,7 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
     graph.pass("caustics/photons/lists-blocks.1", finest).threads(threads(1));
     for level in 2..=blocks.top {
         let first = |level: u32| blocks.first_of_level[level as usize - 1];
-        let push =
-            CoarserPush { resolution, view_count, level, first: first(level), first_finer: first(level - 1) };
+        let push = CoarserPush { resolution, view_count, level, first: first(level), first_finer: first(level - 1) };
         let coarser = Coarser { blocks: blocks.slices.read_write(), push };
         graph.pass(&format!("caustics/photons/lists-blocks.{level}"), coarser).threads(threads(level));
     }

@@ -86,7 +86,10 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
     let arrivals = Arrivals::declare(graph, capacity);
     let lists = (settings.trace != PhotonTracing::Bvh).then(|| {
-        lists::build(graph, &lists::ListInputs { data: inputs.data, geometry: inputs.geometry, camera: Some(inputs.camera), settings })
+        lists::build(
+            graph,
+            &lists::ListInputs { data: inputs.data, geometry: inputs.geometry, camera: Some(inputs.camera), settings },
+        )
     });
     let scene = inputs.traced.map(|traced| (traced, traced.import(graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));

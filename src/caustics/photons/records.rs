@@ -17,6 +17,7 @@ pub(crate) const DRAW_WORD: usize = 4;
 /// Texels of four words.
 const RAY_TEXELS: usize = 3;
 const PHOTON_TEXELS: usize = 2;
+const RAY_BEAM_TEXELS: usize = 3;
 
 /// Rays of one stage, and what they hit.
 #[derive(Clone, Copy)]
@@ -24,6 +25,8 @@ pub(crate) struct PhotonRays {
     pub(crate) rays: BufferRef<[u32; 4]>,
     /// One texel a ray, as words, since the nearest hit may be found by an atomic minimum.
     pub(crate) hits: BufferRef<u32>,
+    /// How the rays beside each run (glsl/photons/beam.glsl).
+    pub(crate) beams: BufferRef<[f32; 4]>,
     pub(crate) stage: usize,
     pub(crate) capacity: u32,
 }
@@ -42,6 +45,7 @@ impl PhotonRays {
         PhotonRays {
             rays: graph.buffer(&format!("photons.rays.{stage}"), RAY_TEXELS * capacity as usize),
             hits: graph.buffer(&format!("photons.hits.{stage}"), 4 * capacity as usize),
+            beams: graph.buffer(&format!("photons.beams.{stage}"), RAY_BEAM_TEXELS * capacity as usize),
             stage,
             capacity,
         }

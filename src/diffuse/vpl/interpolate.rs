@@ -25,12 +25,7 @@ pub(super) fn interpolate(
             region_planes: planes_of_level(level + 1),
             irradiance: irradiance.read_write(),
             camera: buffer.camera.clone(),
-            push: InterpolatePush {
-                size: signed(size),
-                level: level.cast_signed(),
-                depth_threshold,
-                normal_threshold,
-            },
+            push: InterpolatePush { size: signed(size), level: level.cast_signed(), depth_threshold, normal_threshold },
         };
         let regions = size.map(|side| side >> (level + 1));
         graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);
