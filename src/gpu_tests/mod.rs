@@ -25,6 +25,7 @@ mod path_repeats;
 mod path_robustness;
 mod path_weights;
 mod photons_emit;
+mod photons_land;
 mod photons_probe;
 mod probe;
 mod raster;

@@ -97,33 +97,53 @@ pub(super) fn photons(session: &Session, scene: &Scene, settings: &Settings, tim
     let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
     let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
     let facts = scene.facts();
-    let mut graph = Graph::new(&mut store);
-    let geometry = Geometry::import(&mut graph, &data);
-    let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
-    let buffer =
-        gbuffer(&mut graph, &data, &geometry, &facts, &View { camera, size: [8, 8], sky: [0.0; 3], emission: false });
-    let (lights, _) = light_views(&mut graph, &data, &geometry, &set, false);
-    let inputs = PhotonInputs {
-        buffer: &buffer,
-        data: &data,
-        geometry: &geometry,
-        facts: &facts,
-        set: &set,
-        lights: &lights,
-        traced: Some(&traced),
-        settings: &settings.photons,
+    let mut frame = || {
+        store.invalidate();
+        let mut graph = Graph::new(&mut store);
+        let geometry = Geometry::import(&mut graph, &data);
+        let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
+        let buffer = gbuffer(
+            &mut graph,
+            &data,
+            &geometry,
+            &facts,
+            &View { camera, size: [8, 8], sky: [0.0; 3], emission: false },
+        );
+        let (lights, _) = light_views(&mut graph, &data, &geometry, &set, false);
+        let inputs = PhotonInputs {
+            buffer: &buffer,
+            data: &data,
+            geometry: &geometry,
+            facts: &facts,
+            set: &set,
+            lights: &lights,
+            traced: Some(&traced),
+            settings: &settings.photons,
+        };
+        let made = trace_all(&mut graph, &inputs);
+        let reads = [
+            graph.read_back_buffer(made.landed.photons),
+            graph.read_back_buffer(made.landed.counts),
+            graph.read_back_buffer(made.choice),
+            graph.read_back_buffer(made.arrivals),
+            graph.read_back_buffer(made.rays.rays),
+            graph.read_back_buffer(made.arrival_counts),
+        ];
+        let mut executed = graph.run(timing).expect("a frame");
+        (reads.map(|read| words(&executed.take(read))), executed.passes, made)
     };
-    let made = trace_all(&mut graph, &inputs);
-    let reads = [
-        graph.read_back_buffer(made.landed.photons),
-        graph.read_back_buffer(made.landed.counts),
-        graph.read_back_buffer(made.choice),
-        graph.read_back_buffer(made.arrivals),
-        graph.read_back_buffer(made.rays.rays),
-        graph.read_back_buffer(made.arrival_counts),
-    ];
-    let mut executed = graph.run(timing).expect("a frame");
-    let [photons, counts, choice, arrivals, rays, arrival_counts] = reads.map(|read| words(&executed.take(read)));
+    let (mut read, mut passes, made) = frame();
+    if timing == Timing::Passes {
+        // The first frame compiles the kernels.
+        for _ in 0..6 {
+            let again;
+            (read, again, _) = frame();
+            for (pass, again) in passes.iter_mut().zip(again) {
+                pass.ms = pass.ms.zip(again.ms).map(|(a, b)| a.min(b));
+            }
+        }
+    }
+    let [photons, counts, choice, arrivals, rays, arrival_counts] = read;
     let count = |counts: &[u32], stage: usize| {
         let (groups, count, drawn) = (counts[8 * stage], counts[8 * stage + 3], counts[8 * stage + 5]);
         assert_eq!(groups, count.div_ceil(64), "groups for {count}");
@@ -147,7 +167,7 @@ pub(super) fn photons(session: &Session, scene: &Scene, settings: &Settings, tim
         level: choice[3],
         emitted: choice[5] as usize,
         ray_counts: (0..stages).map(|stage| count(&counts, stage)).collect(),
-        passes: executed.passes,
+        passes,
         landed_words,
     }
 }
