@@ -83,7 +83,8 @@ Place draw_texel(uint level, ivec2 block, float random) {
     return Place(block, whole / part);
 }
 
-// Where the light's ray through a tangent coordinate meets the plane of what the texel's middle sees, at most four texels off.
+// Where the light's ray through a tangent coordinate meets the plane of what the texel's middle sees. Where that is more than four
+// texels off, at grazing light, it is the middle: points beside the plane would lie within the body.
 vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, vec3 normal) {
     vec3 seen = position_of_texel(view, middle, depth);
     vec3 origin = view.origin_rs;
@@ -95,7 +96,7 @@ vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, v
     float z = dot(normal, seen - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
     float middle_z = linear_depth(view, depth);
     float reach = 4.0 * view.tangent_step * (is_orthographic(view) ? 1.0 : middle_z);
-    return origin + ray * clamp(z, middle_z - reach, middle_z + reach);
+    return abs(z - middle_z) <= reach ? origin + ray * z : seen;
 }
 
 void main() {
