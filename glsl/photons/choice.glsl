@@ -1,6 +1,6 @@
 // What the device decides about a frame's photons, in words:
 //
-//   0 to 2   arguments of an indirect dispatch over the blocks of the chosen level, 8x8 a group
+//   0 to 2   arguments of an indirect dispatch over the blocks of the chosen level, 32x32 a group
 //   3        the level
 //   4        log₂ of the photons to a side of a texel: 0 unless the level is 0
 //   5        photons that are sent out

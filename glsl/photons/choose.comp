@@ -36,8 +36,8 @@ void main() {
     }
     Level chosen = load_level(level);
     uint groups = (photons + 63u) / 64u;
-    choice[0] = uint(chosen.size.x + 7) / 8u;
-    choice[1] = photons > 0u ? uint(chosen.size.y + 7) / 8u : 0u;
+    choice[0] = uint(chosen.size.x + 31) / 32u;
+    choice[1] = photons > 0u ? uint(chosen.size.y + 31) / 32u : 0u;
     choice[2] = 1u;
     choice[CHOICE_LEVEL] = level;
     choice[CHOICE_SPLIT] = split;

@@ -86,20 +86,7 @@ Place draw_texel(uint level, ivec2 block, float random) {
     return Place(block, whole / part);
 }
 
-// Where the light's ray through a tangent coordinate meets the plane of what the texel's middle sees, at most four texels off.
-vec3 position_on_texel(LightView view, vec2 middle, vec2 tangent, float depth, vec3 normal) {
-    vec3 seen = position_of_texel(view, middle, depth);
-    vec3 origin = view.origin_rs;
-    if (is_orthographic(view)) {
-        origin += tangent.x * view.right + tangent.y * view.down;
-    }
-    vec3 ray = ray_of_tangent(view, tangent);
-    float slope = dot(normal, ray);
-    float z = dot(normal, seen - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
-    float middle_z = linear_depth(view, depth);
-    float reach = 4.0 * view.tangent_step * (is_orthographic(view) ? 1.0 : middle_z);
-    return origin + ray * clamp(z, middle_z - reach, middle_z + reach);
-}
+#include "photons/cells.glsl"
 
 // The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface.
 vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
@@ -138,12 +125,15 @@ void main() {
     uvec4 surface = texelFetch(specular_surface, texel, 0);
     uvec2 layer = texelFetch(specular_layer, texel, 0).xy;
     vec2 middle = tangent_of_texel(view, vec2(texel) + 0.5);
-    vec2 in_texel = (vec2(morton_place(cell)) + 0.5) * exp2(-float(split)) - 0.5;
-    vec2 tangent = middle + in_texel * view.tangent_step;
-    vec3 position = position_on_texel(view, middle, tangent, depth, unpack_direction(surface.y));
+    CellPoint point = CellPoint(middle, depth);
+    if (split > 0u) {
+        vec2 in_texel = (vec2(morton_place(cell)) + 0.5) * exp2(-float(split)) - 0.5;
+        point = point_of_cell(view, texel, in_texel, depth, unpack_direction(surface.y));
+    }
+    vec3 position = position_of_texel(view, point.tangent, point.depth);
 
     // A directional light counts as at the scene's radius from what it lights.
-    vec3 ray = ray_of_tangent(view, tangent);
+    vec3 ray = ray_of_tangent(view, point.tangent);
     float texel_width = view.tangent_step * (is_orthographic(view) ? 1.0 : linear_depth(view, depth));
     float lit_way = is_orthographic(view) ? push.radius : distance(position, view.origin_rs);
     vec3 flux = incident_flux(load_light(lights, view.light), view, vec2(texel) + 0.5, depth);

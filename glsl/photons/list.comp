@@ -6,8 +6,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
-// Lists the blocks of the chosen level that are not empty: column and row in 16 bits each. One group looks at 8x8 of them, which the level
-// three above holds as one block.
+// Lists the blocks of the chosen level that are not empty: column and row in 16 bits each. One group looks at 32x32 of them, eight by eight;
+// the levels five and three above hold these squares as one block.
 
 layout(local_size_x = 64) in;
 
@@ -32,22 +32,34 @@ bool is_taken(uint number, ivec2 block) {
     return number == 0u ? texelFetch(mask, block, 0).x > 0.0 : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x) > 0.0;
 }
 
+// Whether the square of 2^above blocks to a side may hold some.
+bool may_hold(uint level, uint above, ivec2 square) {
+    return level + above >= push.level_count || is_taken(level + above, square);
+}
+
 void main() {
     uint level = choice[CHOICE_LEVEL];
-    if (level + 3u < push.level_count && !is_taken(level + 3u, ivec2(gl_WorkGroupID.xy))) {
+    if (!may_hold(level, 5u, ivec2(gl_WorkGroupID.xy))) {
         return;
     }
     uint lane = gl_LocalInvocationIndex & 7u;
     uint part = gl_LocalInvocationIndex >> 3;
-    ivec2 block = ivec2(gl_WorkGroupID.xy * 8u + uvec2((part & 1u) * 4u + (lane & 3u), (part >> 1) * 2u + (lane >> 2)));
-    bool taken = is_taken(level, block);
-    uvec4 voters = subgroupBallot(taken);
-    uint first = 0u;
-    if (subgroupElect()) {
-        first = atomicAdd(choice[CHOICE_LISTED], subgroupBallotBitCount(voters));
-    }
-    uint place = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(voters);
-    if (taken && place < push.capacity) {
-        blocks[place] = uint(block.y) << 16 | uint(block.x);
+    uvec2 in_square = uvec2((part & 1u) * 4u + (lane & 3u), (part >> 1) * 2u + (lane >> 2));
+    [[dont_unroll]] for (uint index = 0u; index < 16u; ++index) {
+        uvec2 square = gl_WorkGroupID.xy * 4u + uvec2(index & 3u, index >> 2);
+        if (!may_hold(level, 3u, ivec2(square))) {
+            continue;
+        }
+        ivec2 block = ivec2(square * 8u + in_square);
+        bool taken = is_taken(level, block);
+        uvec4 voters = subgroupBallot(taken);
+        uint first = 0u;
+        if (subgroupElect()) {
+            first = atomicAdd(choice[CHOICE_LISTED], subgroupBallotBitCount(voters));
+        }
+        uint place = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(voters);
+        if (taken && place < push.capacity) {
+            blocks[place] = uint(block.y) << 16 | uint(block.x);
+        }
     }
 }

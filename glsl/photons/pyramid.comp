@@ -43,6 +43,11 @@ void main() {
         uint taken = uint(quad.x > 0.0) + uint(quad.y > 0.0) + uint(quad.z > 0.0) + uint(quad.w > 0.0);
         atomicAdd(tallies[0], taken);
     }
+    barrier();
+    if (tallies[0] == 0u) {
+        // The pyramid was emptied before.
+        return;
+    }
     [[dont_unroll]] for (uint step = 1u; step <= 4u; ++step) {
         // The sums of this level lie in the upper left corner of the group's square.
         int side = 16 >> step;

@@ -28,6 +28,7 @@ mod path_weights;
 mod photon_lists;
 mod photon_splat;
 mod photons_emit;
+mod photons_land;
 mod photons_probe;
 mod probe;
 mod raster;

@@ -4,14 +4,14 @@ use glam::{DVec3, Vec3};
 
 use super::scenes::view;
 use super::session::Session;
-use crate::caustics::photons::{PhotonInputs, trace_all};
+use crate::caustics::photons::{PhotonInputs, TracedPhotons, trace_all};
 use crate::frame::gbuffer::{View, gbuffer};
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::light_views;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins::unpack_direction;
-use crate::graph::Graph;
+use crate::graph::{Graph, Store};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
 use crate::scene::Scene;
@@ -89,41 +89,83 @@ fn landed(words: &[u32]) -> Landed {
     }
 }
 
+type Reads = [Vec<u32>; 6];
+
+/// A scene on the device, and what frames left there.
+struct OnDevice<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    store: Store,
+    data: SceneData,
+    set: LightSet,
+    traced: TracedScene,
+}
+
+impl OnDevice<'_> {
+    fn new<'a>(session: &Session, scene: &'a Scene, settings: &'a Settings) -> OnDevice<'a> {
+        let store = session.store();
+        let device = store.device().clone();
+        let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
+        let limit = device.limits().max_image_dimension2_d;
+        let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
+        let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
+        OnDevice { scene, settings, store, data, set, traced }
+    }
+
+    fn frame(&mut self, timing: Timing) -> (Reads, Vec<PassTiming>, TracedPhotons) {
+        let OnDevice { scene, settings, store, data, set, traced } = self;
+        let facts = scene.facts();
+        let mut graph = Graph::new(store);
+        let geometry = Geometry::import(&mut graph, data);
+        let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
+        let view = View { camera, size: [8, 8], sky: [0.0; 3], emission: false };
+        let buffer = gbuffer(&mut graph, data, &geometry, &facts, &view);
+        let (lights, _) = light_views(&mut graph, data, &geometry, set, false);
+        let inputs = PhotonInputs {
+            buffer: &buffer,
+            data,
+            geometry: &geometry,
+            facts: &facts,
+            set,
+            lights: &lights,
+            traced: Some(traced),
+            settings: &settings.photons,
+        };
+        let made = trace_all(&mut graph, &inputs);
+        let reads = [
+            graph.read_back_buffer(made.landed.photons),
+            graph.read_back_buffer(made.landed.counts),
+            graph.read_back_buffer(made.choice),
+            graph.read_back_buffer(made.arrivals),
+            graph.read_back_buffer(made.rays.rays),
+            graph.read_back_buffer(made.arrival_counts),
+        ];
+        let mut executed = graph.run(timing).expect("a frame");
+        (reads.map(|read| words(&executed.take(read))), executed.passes, made)
+    }
+}
+
+/// The passes of a second frame that is like the first.
+pub(super) fn passes_of_second_frame(session: &Session, scene: &Scene, settings: &Settings) -> Vec<PassTiming> {
+    let mut device = OnDevice::new(session, scene, settings);
+    device.frame(Timing::Frame);
+    device.frame(Timing::Frame).1
+}
+
+/// The photons of one frame. With passes timed, the least times of several frames.
 pub(super) fn photons(session: &Session, scene: &Scene, settings: &Settings, timing: Timing) -> Photons {
-    let mut store = session.store();
-    let device = store.device().clone();
-    let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
-    let limit = device.limits().max_image_dimension2_d;
-    let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
-    let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
-    let facts = scene.facts();
-    let mut graph = Graph::new(&mut store);
-    let geometry = Geometry::import(&mut graph, &data);
-    let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
-    let buffer =
-        gbuffer(&mut graph, &data, &geometry, &facts, &View { camera, size: [8, 8], sky: [0.0; 3], emission: false });
-    let (lights, _) = light_views(&mut graph, &data, &geometry, &set, false);
-    let inputs = PhotonInputs {
-        buffer: &buffer,
-        data: &data,
-        geometry: &geometry,
-        facts: &facts,
-        set: &set,
-        lights: &lights,
-        traced: Some(&traced),
-        settings: &settings.photons,
-    };
-    let made = trace_all(&mut graph, &inputs);
-    let reads = [
-        graph.read_back_buffer(made.landed.photons),
-        graph.read_back_buffer(made.landed.counts),
-        graph.read_back_buffer(made.choice),
-        graph.read_back_buffer(made.arrivals),
-        graph.read_back_buffer(made.rays.rays),
-        graph.read_back_buffer(made.arrival_counts),
-    ];
-    let mut executed = graph.run(timing).expect("a frame");
-    let [photons, counts, choice, arrivals, rays, arrival_counts] = reads.map(|read| words(&executed.take(read)));
+    let mut device = OnDevice::new(session, scene, settings);
+    let (read, mut passes, made) = device.frame(timing);
+    if timing == Timing::Passes {
+        // The first frame compiles the kernels.
+        for _ in 0..6 {
+            device.store.invalidate();
+            for (pass, again) in passes.iter_mut().zip(device.frame(timing).1) {
+                pass.ms = pass.ms.zip(again.ms).map(|(a, b)| a.min(b));
+            }
+        }
+    }
+    let [photons, counts, choice, arrivals, rays, arrival_counts] = read;
     let count = |counts: &[u32], stage: usize| {
         let (groups, count, drawn) = (counts[8 * stage], counts[8 * stage + 3], counts[8 * stage + 5]);
         assert_eq!(groups, count.div_ceil(64), "groups for {count}");
@@ -140,14 +182,14 @@ pub(super) fn photons(session: &Session, scene: &Scene, settings: &Settings, tim
     let arrived = count(&arrival_counts, stages - 1);
     let left = count(&counts, stages - 1);
     Photons {
-        origin: data.origin,
+        origin: device.data.origin,
         arrivals: arrivals.chunks_exact(12).take(arrived).map(ray).collect(),
         rays: rays.chunks_exact(12).take(left).map(ray).collect(),
         landed: landed_words.iter().map(|words| landed(words)).collect(),
         level: choice[3],
         emitted: choice[5] as usize,
         ray_counts: (0..stages).map(|stage| count(&counts, stage)).collect(),
-        passes: executed.passes,
+        passes,
         landed_words,
     }
 }
