@@ -1,7 +1,9 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
+mod ism;
 mod sample;
+mod visibility;
 
 use ash::vk;
 
@@ -14,6 +16,7 @@ use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::VplSettings;
+use visibility::{Rays, Visibility};
 
 /// What the method takes.
 pub(crate) struct VplInputs<'a> {
@@ -39,6 +42,8 @@ pub(crate) struct Vpl {
 pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
     let vpls = sample::sample(graph, inputs);
-    gather::gather_pixels(graph, inputs, vpls, diffuse);
+    let rays = inputs.traced.map(|traced| Rays::new(graph, inputs, traced));
+    let visibility = Visibility::new(graph, inputs, rays.as_ref(), vpls, inputs.settings.count);
+    gather::gather_pixels(graph, inputs, vpls, &visibility, diffuse);
     Vpl { diffuse, vpls }
 }
