@@ -5,9 +5,6 @@
 #include "ism/map.glsl"
 #include "lib/vpl.glsl"
 
-// A surface is behind another if that is nearer by half a texel's angle.
-const float ISM_BIAS = 1.5;
-
 // Whether the VPL, the k-th, sees the point of a surface with this normal, which faces it. What a texel holds is compared with the plane
 // of the receiver in the direction of the texel's centre: a flat wall does not shadow itself at any slope.
 bool ism_sees(samplerBuffer maps, uint resolution, uint k, Vpl vpl, vec3 position_rs, vec3 normal) {
@@ -21,7 +18,7 @@ bool ism_sees(samplerBuffer maps, uint resolution, uint k, Vpl vpl, vec3 positio
     float known = texelFetch(maps, int((k * resolution + uint(texel.y)) * resolution + uint(texel.x))).x;
     float inverse = 1.0 / max(distance, 1e-20);
     float plane = dot(to_map_frame(axis, normal), direction_of_map(center_of_texel(texel, side))) / dot(normal, way);
-    return known <= max(inverse, min(plane, 2.0 * inverse)) * (1.0 + ISM_BIAS / side);
+    return known <= max(inverse, min(plane, 2.0 * inverse));
 }
 
 #endif

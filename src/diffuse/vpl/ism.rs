@@ -123,8 +123,14 @@ pub(crate) fn imperfect_shadow_maps(
         coarse = pushed;
     }
     let maps = graph.buffer::<f32>("ism.maps", count(side));
-    let push = FillPush { vpl_count, side, coarse_side: sides[1] };
-    let pass = Fill { drawn: drawn.texels(FLOAT), coarse: coarse.texels(FLOATS2), maps: maps.write(), push };
+    let SurfacePoints { area_before, points_of_set, block_count, .. } = surfaces;
+    let pass = Fill {
+        drawn: drawn.texels(FLOAT),
+        coarse: coarse.texels(FLOATS2),
+        area_before: area_before.texels(FLOAT),
+        maps: maps.write(),
+        push: FillPush { vpl_count, side, coarse_side: sides[1], points_of_set, block_count },
+    };
     graph.pass("diffuse/vpl/ism-fill", pass).groups(groups(side));
     ImperfectShadowMaps { maps, resolution: side }
 }
