@@ -17,7 +17,7 @@ struct Receiver {
 };
 
 float received_factor(int k, Vpl vpl, Receiver receiver) {
-    float factor = vpl_form_factor(vpl, receiver.position_rs, receiver.normal);
+    float factor = vpl_disc_form_factor(vpl, receiver.position_rs, receiver.normal);
 #ifdef VPL_VISIBILITY
     if (factor > 0.0) {
         factor *= vpl_visibility(k, vpl, receiver.position_rs, receiver.normal);
@@ -30,9 +30,17 @@ void gather(int vpl_count, Receiver a, Receiver b, out vec3 irradiance_a, out ve
     irradiance_a = vec3(0.0);
     irradiance_b = vec3(0.0);
     for (int k = 0; k < vpl_count; ++k) {
-        Vpl vpl = unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1));
+        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
         irradiance_a += vpl.strength * received_factor(k, vpl, a);
         irradiance_b += vpl.strength * received_factor(k, vpl, b);
+    }
+}
+
+void gather(int vpl_count, Receiver receiver, out vec3 irradiance) {
+    irradiance = vec3(0.0);
+    for (int k = 0; k < vpl_count; ++k) {
+        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
+        irradiance += vpl.strength * received_factor(k, vpl, receiver);
     }
 }
 

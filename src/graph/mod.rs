@@ -104,6 +104,11 @@ impl<'s> Graph<'s> {
         Graph { store, resources: Vec::new(), passes: Vec::new(), wanted: Vec::new(), read_backs: Vec::new() }
     }
 
+    /// Whether the device is a software driver, where other variants of a pass may be the faster ones.
+    pub(crate) fn runs_on_cpu(&self) -> bool {
+        self.store.device().is_cpu()
+    }
+
     fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {
         debug_assert!(self.resources.iter().all(|resource| resource.name != name), "{name} is declared twice");
         let content = (0..places).map(content).collect();

@@ -2,81 +2,173 @@
 
 use ash::vk;
 
-use super::VplInputs;
+use super::pyramid::{Pyramid, signed};
+use super::regions::{VALID, flattened_size};
 use super::visibility::Visibility;
-use crate::graph::Graph;
+use super::{VplInputs, vpl_count};
 use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::graph::{ClearColor, Graph};
 use crate::shaders::vpl::{
-    GatherPixels, GatherPixelsIsm, GatherPixelsIsmPush, GatherPixelsPush, GatherPixelsTraced, GatherPixelsTracedPush,
+    GatherPixels, GatherPixelsPush, GatherRegions, GatherRegionsPush, GatherStencil, GatherStencilPush,
 };
+use crate::vulkan::{RasterState, StencilState};
 
 /// The slot, gathered at every pixel.
 pub(super) fn gather_pixels(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
     vpls: BufferRef<[f32; 4]>,
-    visibility: &Visibility<'_>,
+    visibility: &Visibility,
     diffuse: ImageRef,
 ) {
-    let buffer = inputs.buffer;
-    let vpl_count = inputs.settings.count;
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
+    let vpl_count = vpl_count(vpls);
     let (specular, has_specular) = buffer.specular();
-    let camera = buffer.camera.clone();
-    let (depth, surface, specular) = (buffer.depth.sampled(), buffer.surface.sampled(), specular.sampled());
-    let lights = vpls.texels(vk::Format::R32G32B32A32_SFLOAT);
-    let diffuse = diffuse.write();
-    let pass = match visibility {
-        Visibility::None => {
-            let push = GatherPixelsPush { vpl_count, has_specular };
-            let pass = GatherPixels { camera, depth, surface, specular, vpls: lights, diffuse, push };
-            graph.pass("diffuse/vpl/gather-pixels", pass)
-        }
-        Visibility::Ism(maps) => {
-            let pass = GatherPixelsIsm {
-                camera,
-                depth,
-                surface,
-                specular,
-                vpls: lights,
-                diffuse,
-                ism_maps: maps.texels(),
-                ism_resolution: maps.resolution,
-                push: GatherPixelsIsmPush { vpl_count, has_specular },
-            };
-            graph.pass("diffuse/vpl/gather-pixels-ism", pass)
-        }
-        Visibility::Traced(rays) => {
-            let scene = &rays.scene;
-            let pass = GatherPixelsTraced {
-                eye: camera.clone(),
-                camera,
-                depth,
-                surface,
-                specular,
-                vpls: lights,
-                diffuse,
-                bvh_nodes: scene.bvh_nodes.clone(),
-                bvh_triangles: scene.bvh_triangles.clone(),
-                rays: rays.rays.clone(),
-                triangles: scene.triangles.clone(),
-                corner_colors: scene.corner_colors.clone(),
-                corner_texcoords: scene.corner_texcoords.clone(),
-                materials: scene.materials.clone(),
-                material_textures: scene.material_textures.clone(),
-                texture_table: scene.texture_table.clone(),
-                texels: scene.texels.clone(),
-                alpha_masks: rays.alpha_masks,
-                vertex_colors: rays.vertex_colors,
-                push: GatherPixelsTracedPush { vpl_count, has_specular },
-            };
-            graph.pass("diffuse/vpl/gather-pixels-traced", pass)
-        }
+    let pass = GatherPixels {
+        camera: buffer.camera.clone(),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        specular: specular.sampled(),
+        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
+        diffuse: diffuse.write(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
+        push: GatherPixelsPush { vpl_count, has_specular },
     };
     let [width, height] = buffer.size;
     let terms = u64::from(width) * u64::from(height) * u64::from(vpl_count);
-    pass.note("VPL terms", terms).groups([
+    graph.pass("diffuse/vpl/gather-pixels", pass).note("VPL terms", terms).groups([
         width.div_ceil(16),
         height.div_ceil(8),
         1,
     ]);
+}
+
+/// Regions that one group of the list's gather takes.
+pub(super) const REGIONS_PER_GROUP: u32 = 128;
+
+/// Irradiance of the regions on the list, in the flattened image; alpha is 0 where there is none.
+pub(super) fn gather_list(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    vpls: BufferRef<[f32; 4]>,
+    visibility: &Visibility,
+    pyramid: &Pyramid,
+    list: BufferRef<u32>,
+) -> ImageRef {
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
+    let irradiance = flattened(graph, buffer.size);
+    graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
+    let pass = GatherRegions {
+        camera: buffer.camera.clone(),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        planes: pyramid.planes.sampled(),
+        normals: pyramid.normals.sampled(),
+        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
+        list: list.texels(vk::Format::R32_UINT),
+        irradiance: irradiance.modify(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
+        push: GatherRegionsPush {
+            size: signed(buffer.size),
+            level_count: pyramid.level_count.cast_signed(),
+            vpl_count: vpl_count(vpls),
+        },
+    };
+    graph.pass("diffuse/vpl/gather-regions", pass).count("regions", list, 3).threads_indirect(list, 0);
+    irradiance
+}
+
+/// The same where the stencil is marked. Returns the count of invocations besides.
+pub(super) fn gather_stencil(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    vpls: BufferRef<[f32; 4]>,
+    visibility: &Visibility,
+    pyramid: &Pyramid,
+    stencil: ImageRef,
+) -> (ImageRef, BufferRef<u32>) {
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
+    let irradiance = flattened(graph, buffer.size);
+    let invocations = graph.buffer::<u32>("vpl.invocations", 1);
+    graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);
+    let pass = GatherStencil {
+        camera: buffer.camera.clone(),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        planes: pyramid.planes.sampled(),
+        normals: pyramid.normals.sampled(),
+        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
+        invocations: invocations.read_write(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
+        push: GatherStencilPush {
+            size: signed(buffer.size),
+            level_count: pyramid.level_count.cast_signed(),
+            vpl_count: vpl_count(vpls),
+        },
+    };
+    let tests = StencilState { compare: vk::CompareOp::EQUAL, pass: vk::StencilOp::KEEP, reference: VALID };
+    let state = RasterState {
+        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+        stencil: Some(tests),
+        ..RasterState::default()
+    };
+    graph
+        .raster("diffuse/vpl/gather-stencil", pass, state)
+        .count("regions", invocations, 0)
+        .color(irradiance, Some(ClearColor::Float([0.0; 4])))
+        .stencil(stencil, None)
+        .vertices(3, 1);
+    (irradiance, invocations)
+}
+
+fn flattened(graph: &mut Graph<'_>, size: [u32; 2]) -> ImageRef {
+    graph.image("vpl.irradiance", vk::Format::R32G32B32A32_SFLOAT, flattened_size(size))
 }

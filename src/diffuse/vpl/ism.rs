@@ -6,6 +6,7 @@
 
 use ash::vk;
 
+use super::vpl_count;
 use crate::frame::geometry::Geometry;
 use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -63,15 +64,15 @@ fn resolution_for(vpl_count: u32, settings: &VplSettings) -> u32 {
     settings.ism_resolution.min((MOST_TEXELS / vpl_count.max(1)).isqrt()).max(1)
 }
 
-/// Declares the passes that make a map for each of the first `vpl_count` VPLs of `vpls` (glsl/lib/vpl.glsl).
+/// Declares the passes that make a map for each of `vpls` (glsl/lib/vpl.glsl).
 pub(crate) fn imperfect_shadow_maps(
     graph: &mut Graph<'_>,
     data: &SceneData,
     geometry: &Geometry,
     vpls: BufferRef<[f32; 4]>,
-    vpl_count: u32,
     settings: &VplSettings,
 ) -> ImperfectShadowMaps {
+    let vpl_count = vpl_count(vpls);
     let surfaces = surface_points(graph, data, geometry, settings.ism_points);
     let side = resolution_for(vpl_count, settings);
     let count = |side: u32| vpl_count as usize * side as usize * side as usize;

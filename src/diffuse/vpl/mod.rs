@@ -1,7 +1,10 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
+mod interpolate;
 mod ism;
+mod pyramid;
+mod regions;
 mod sample;
 mod visibility;
 
@@ -15,7 +18,7 @@ use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
-use crate::renderer::VplSettings;
+use crate::renderer::{VplSettings, VplShading};
 use visibility::{Rays, Visibility};
 
 /// What the method takes.
@@ -36,14 +39,48 @@ pub(crate) struct Vpl {
     pub(crate) diffuse: ImageRef,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) vpls: BufferRef<[f32; 4]>,
+    /// Where regions are marked in a stencil: how often the gather's shader ran.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) invocations: Option<BufferRef<u32>>,
+    /// Where regions are listed.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) list: Option<BufferRef<u32>>,
 }
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
     let vpls = sample::sample(graph, inputs);
-    let rays = inputs.traced.map(|traced| Rays::new(graph, inputs, traced));
-    let visibility = Visibility::new(graph, inputs, rays.as_ref(), vpls, inputs.settings.count);
-    gather::gather_pixels(graph, inputs, vpls, &visibility, diffuse);
-    Vpl { diffuse, vpls }
+    let rays = Rays::new(graph, inputs, vpls);
+    let visibility = Visibility::new(graph, inputs, rays, vpls);
+    let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
+    let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
+    let shading = match inputs.settings.shading {
+        _ if level_count == 1 => VplShading::Pixels,
+        VplShading::Auto if graph.runs_on_cpu() => VplShading::Compute,
+        VplShading::Auto => VplShading::Stencil,
+        chosen => chosen,
+    };
+    if shading == VplShading::Pixels {
+        gather::gather_pixels(graph, inputs, vpls, &visibility, diffuse);
+        return made;
+    }
+    let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
+    let pyramid = pyramid::pyramid(graph, inputs, level_count, listed);
+    made.list = pyramid.list;
+    let irradiance = if let Some(list) = pyramid.list {
+        gather::gather_list(graph, inputs, vpls, &visibility, &pyramid, list)
+    } else {
+        let stencil = regions::mark(graph, inputs, &pyramid);
+        let (irradiance, invocations) = gather::gather_stencil(graph, inputs, vpls, &visibility, &pyramid, stencil);
+        made.invocations = Some(invocations);
+        irradiance
+    };
+    interpolate::interpolate(graph, inputs, &pyramid, irradiance, diffuse);
+    made
+}
+
+/// Number of VPLs in a buffer of two texels each.
+fn vpl_count(vpls: BufferRef<[f32; 4]>) -> u32 {
+    (vpls.count() / 2) as u32
 }

@@ -66,7 +66,7 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
         sums: sums.sampled(),
         shares: shares.read(),
         vpls: vpls.write(),
-        jitter: JITTER,
+        jitter: std::env::var("JITTER").map_or(JITTER, |j| j.parse().unwrap()),
         push: VplsPush { view_count, vpl_count },
     };
     graph.pass("diffuse/vpl/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);

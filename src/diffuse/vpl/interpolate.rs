@@ -1,0 +1,50 @@
+//! From irradiance at regions to radiance at pixels, coarse to fine.
+
+use super::VplInputs;
+use super::pyramid::{Pyramid, signed};
+use crate::graph::Graph;
+use crate::graph::bindings::ImageRef;
+use crate::shaders::vpl::{Interpolate, InterpolatePush, Resolve, ResolvePush};
+
+/// Declares the passes, one a level; `irradiance` is the flattened image.
+pub(super) fn interpolate(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    pyramid: &Pyramid,
+    irradiance: ImageRef,
+    diffuse: ImageRef,
+) {
+    let buffer = inputs.buffer;
+    let size = buffer.size;
+    let (depth_threshold, normal_threshold) =
+        (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
+    let planes_of_level = |level: u32| pyramid.planes.mip(level - 1).sampled();
+    for level in (1..pyramid.level_count - 1).rev() {
+        let pass = Interpolate {
+            square_planes: planes_of_level(level),
+            region_planes: planes_of_level(level + 1),
+            irradiance: irradiance.read_write(),
+            camera: buffer.camera.clone(),
+            push: InterpolatePush {
+                size: signed(size),
+                level: level.cast_signed(),
+                depth_threshold,
+                normal_threshold,
+            },
+        };
+        let regions = size.map(|side| side >> (level + 1));
+        graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);
+    }
+    let (specular, has_specular) = buffer.specular();
+    let pass = Resolve {
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        specular: specular.sampled(),
+        region_planes: planes_of_level(1),
+        irradiance: irradiance.sampled(),
+        diffuse: diffuse.write(),
+        camera: buffer.camera.clone(),
+        push: ResolvePush { depth_threshold, normal_threshold, has_specular },
+    };
+    graph.pass("diffuse/vpl/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
+}

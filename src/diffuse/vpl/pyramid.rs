@@ -1,0 +1,102 @@
+//! Which regions are flat: a pyramid of planes with a bound of what is off them, and of the least and the greatest normals.
+
+use ash::vk;
+
+use super::VplInputs;
+use crate::graph::Graph;
+use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::shaders::vpl::{FirstRegions, FirstRegionsPush, LargerRegions, LargerRegionsPush};
+use crate::vulkan::ImageInfo;
+
+/// The pyramid: mip l − 1 is level l of the regions (glsl/vpl/regions.glsl).
+pub(super) struct Pyramid {
+    pub(super) planes: ImageRef,
+    pub(super) normals: ImageRef,
+    /// Sizes of regions, pixels included; at least 2.
+    pub(super) level_count: u32,
+    /// The valid regions (glsl/vpl/list.glsl), if they are asked for.
+    pub(super) list: Option<BufferRef<u32>>,
+}
+
+/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear.
+const LEAST_REGIONS: u32 = 16;
+/// Words of the list before its first region: three of an indirect dispatch, the length.
+const LIST_HEADER: usize = 4;
+
+/// As many levels as the settings ask for and the image is large enough for.
+pub(super) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
+    let largest = size[0].min(size[1]) / LEAST_REGIONS;
+    wanted.min(largest.max(1).ilog2() + 1)
+}
+
+/// Declares the passes, one a level; `level_count` is at least 2. `group_regions`: asks for the list of valid regions, for groups that gather for so
+/// many of them each.
+pub(super) fn pyramid(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    level_count: u32,
+    group_regions: Option<u32>,
+) -> Pyramid {
+    let buffer = inputs.buffer;
+    let size = buffer.size;
+    let thresholds = (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
+    let (depth_threshold, normal_threshold) = thresholds;
+    let info = |format| ImageInfo {
+        format,
+        extent: [size[0] / 2, size[1] / 2, 1],
+        mips: level_count - 1,
+        layers: 1,
+        volume: false,
+    };
+    let planes = graph.image_with("vpl.planes", info(vk::Format::R32G32B32A32_SFLOAT));
+    let normals = graph.image_with("vpl.normals", info(vk::Format::R32G32B32A32_UINT));
+    // Every region holds a pixel of its own.
+    let capacity = if group_regions.is_some() { size[0] as usize * size[1] as usize } else { 0 };
+    let list = graph.buffer::<u32>("vpl.list", LIST_HEADER + capacity);
+    graph.fill_buffer("diffuse/vpl/clear-list", list, 0);
+    let (lists, group_regions) = (u32::from(group_regions.is_some()), group_regions.unwrap_or(1));
+    let pass = FirstRegions {
+        camera: buffer.camera.clone(),
+        depth: buffer.depth.sampled(),
+        surface: buffer.surface.sampled(),
+        planes: planes.mip(0).write(),
+        normals: normals.mip(0).write(),
+        list: list.read_write(),
+        lists,
+        group_regions,
+        push: FirstRegionsPush {
+            size: signed(size),
+            level_count: level_count.cast_signed(),
+            depth_threshold,
+            normal_threshold,
+        },
+    };
+    graph.pass("diffuse/vpl/regions-2", pass).pixels(size.map(|side| side.div_ceil(2)));
+    for level in 2..level_count {
+        let pass = LargerRegions {
+            camera: buffer.camera.clone(),
+            quarter_planes: planes.mip(level - 2).sampled(),
+            quarter_normals: normals.mip(level - 2).sampled(),
+            planes: planes.mip(level - 1).write(),
+            normals: normals.mip(level - 1).write(),
+            list: list.read_write(),
+            lists,
+            group_regions,
+            push: LargerRegionsPush {
+                size: signed(size),
+                level: level.cast_signed(),
+                level_count: level_count.cast_signed(),
+                depth_threshold,
+                normal_threshold,
+            },
+        };
+        // Those that the image cuts off too: their quarters may be valid.
+        let regions = size.map(|side| (side >> (level - 1)).div_ceil(2));
+        graph.pass(&format!("diffuse/vpl/regions-{}", 1 << level), pass).pixels(regions);
+    }
+    Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
+}
+
+pub(super) fn signed(size: [u32; 2]) -> [i32; 2] {
+    size.map(u32::cast_signed)
+}
