@@ -3,6 +3,7 @@
 mod gather;
 mod interpolate;
 mod ism;
+mod paths;
 mod pyramid;
 mod regions;
 mod sample;
@@ -50,8 +51,9 @@ pub(crate) struct Vpl {
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
-    let vpls = sample::sample(graph, inputs);
-    let rays = Rays::new(graph, inputs, vpls);
+    let first_bounce = sample::sample(graph, inputs);
+    let rays = Rays::new(graph, inputs, first_bounce);
+    let vpls = paths::with_bounces(graph, inputs, &rays, first_bounce);
     let visibility = Visibility::new(graph, inputs, rays, vpls);
     let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
     let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
