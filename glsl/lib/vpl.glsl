@@ -42,38 +42,4 @@ float vpl_form_factor(Vpl vpl, vec3 position_rs, vec3 normal) {
     return cosines / (squared * (squared + vpl.area_over_pi));
 }
 
-// The same light as a disc at every distance, not on its axis alone: with R² = A/π, h = (n_y·−D) the height over its plane,
-// n_z = −n_x·n_y and g = n_x·(D + h n_y) the receiver's normal along that plane towards the disc's axis,
-//
-//   E(x) = Φ/π · 2/S · (n_z h²/(S + D² − R²) + h g/(S + D² + R²))⁺      S² = (D² − R²)² + 4R²h²
-//
-// Lambert's vector irradiance of a disc, exact while the receiver's plane does not cut it: its parts along and across the axis are the form
-// factors of an element parallel and of one perpendicular to a disc (Howell's catalogue, B-12 and B-13), with the differences S − … taken
-// out by their conjugates. Far away it is the point's, on the axis the disc's of vpl_form_factor(). Bounded by strength/R². The normal of
-// `vpl` has unit length.
-float vpl_disc_form_factor(Vpl vpl, vec3 position_rs, vec3 normal) {
-    vec3 difference = vpl.position_rs - position_rs;
-    float squared = dot(difference, difference);
-    float height = max(-dot(vpl.normal, difference), 0.0);
-    float radius2 = vpl.area_over_pi;
-    float beyond = squared - radius2;
-    float s = sqrt(beyond * beyond + 4.0 * radius2 * height * height) + 1e-20;
-    float axial = -dot(normal, vpl.normal);
-    float radial = dot(normal, difference) - height * axial;
-    // h²/(S + D² − R²) = (S − D² + R²)/4R²: whichever does not cancel.
-    float above = beyond > 0.0 ? height * height : s - beyond;
-    float below = beyond > 0.0 ? s + beyond : 4.0 * radius2;
-    float sum = s + squared + radius2;
-    float factor = 2.0 * (axial * above * sum + height * radial * below) / (below * sum);
-    return height > 0.0 ? max(factor, 0.0) / s : 0.0;
-}
-
-// With the normal at unit length and the strength to match.
-Vpl with_unit_normal(Vpl vpl) {
-    float scale = inversesqrt(dot(vpl.normal, vpl.normal));
-    vpl.normal *= scale;
-    vpl.strength /= scale;
-    return vpl;
-}
-
 #endif

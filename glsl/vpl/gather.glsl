@@ -2,7 +2,7 @@
 //
 //   E(x) = Σ_k Φ_k/π · F_k(x) · V_k(x)      [W/m²]
 //
-// F the form factor of lib/vpl.glsl; V the visibility, if the including file defines, before it includes this one,
+// F the form factor of vpl/disc.glsl; V the visibility, if the including file defines, before it includes this one,
 //
 //   #define VPL_VISIBILITY
 //   float vpl_visibility(int k, Vpl vpl, vec3 position_rs, vec3 normal);
@@ -11,13 +11,15 @@
 #ifndef VPL_GATHER
 #define VPL_GATHER
 
+#include "vpl/disc.glsl"
+
 struct Receiver {
     vec3 position_rs;
     vec3 normal;   // 0: there is no receiver
 };
 
 float received_factor(int k, Vpl vpl, Receiver receiver) {
-    float factor = vpl_disc_form_factor(vpl, receiver.position_rs, receiver.normal);
+    float factor = disc_form_factor(vpl, receiver.position_rs, receiver.normal);
 #ifdef VPL_VISIBILITY
     if (factor > 0.0) {
         factor *= vpl_visibility(k, vpl, receiver.position_rs, receiver.normal);
@@ -30,7 +32,7 @@ void gather(int vpl_count, Receiver a, Receiver b, out vec3 irradiance_a, out ve
     irradiance_a = vec3(0.0);
     irradiance_b = vec3(0.0);
     for (int k = 0; k < vpl_count; ++k) {
-        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
+        Vpl vpl = as_disc(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
         irradiance_a += vpl.strength * received_factor(k, vpl, a);
         irradiance_b += vpl.strength * received_factor(k, vpl, b);
     }
@@ -39,7 +41,7 @@ void gather(int vpl_count, Receiver a, Receiver b, out vec3 irradiance_a, out ve
 void gather(int vpl_count, Receiver receiver, out vec3 irradiance) {
     irradiance = vec3(0.0);
     for (int k = 0; k < vpl_count; ++k) {
-        Vpl vpl = with_unit_normal(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
+        Vpl vpl = as_disc(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
         irradiance += vpl.strength * received_factor(k, vpl, receiver);
     }
 }

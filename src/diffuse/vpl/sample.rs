@@ -1,4 +1,4 @@
-//! The virtual point lights of the first bounce: cells of the light views, of equal flux, with a jittered point in each.
+//! The virtual point lights of the first bounce: one for each of N cells of equal flux of the light views.
 
 use ash::vk;
 
@@ -11,9 +11,6 @@ use crate::shaders::vpl::{BlockFlux, BlockFluxPush, BlockSums, Share, SharePush,
 /// Side of a block of light-view texels (glsl/vpl/blocks.glsl); the atlas is a multiple of twice that.
 const BLOCK_SIDE: u32 = 8;
 const BLOCKS_PER_TILE: u32 = 4;
-
-/// How much of its cell a VPL may be anywhere in: 0 puts it at the medians, 1 is the paper's.
-const JITTER: f32 = 1.0;
 
 /// Declares the passes that make `settings.count` VPLs of two texels each (glsl/lib/vpl.glsl).
 pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef<[f32; 4]> {
@@ -66,7 +63,6 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
         sums: sums.sampled(),
         shares: shares.read(),
         vpls: vpls.write(),
-        jitter: std::env::var("JITTER").map_or(JITTER, |j| j.parse().unwrap()),
         push: VplsPush { view_count, vpl_count },
     };
     graph.pass("diffuse/vpl/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
