@@ -9,5 +9,6 @@
 
 layout(set = 0, binding = 4) uniform samplerBuffer vpls;
 
+#include "vpl/visibility.glsl"
 #include "vpl/gather.glsl"
 #include "vpl/gather_pixels.glsl"

@@ -10,6 +10,7 @@
 
 layout(set = 0, binding = 5) uniform samplerBuffer vpls;
 
+#include "vpl/visibility.glsl"
 #include "vpl/gather.glsl"
 #include "vpl/receivers.glsl"
 #include "vpl/gather_stencil.glsl"

@@ -2,9 +2,10 @@
 
 use ash::vk;
 
-use super::VplInputs;
 use super::pyramid::{Pyramid, signed};
 use super::regions::{VALID, flattened_size};
+use super::visibility::Visibility;
+use super::{VplInputs, vpl_count};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::vpl::{
@@ -17,10 +18,12 @@ pub(super) fn gather_pixels(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
     vpls: BufferRef<[f32; 4]>,
+    visibility: &Visibility,
     diffuse: ImageRef,
 ) {
-    let buffer = inputs.buffer;
-    let vpl_count = inputs.settings.count;
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
+    let vpl_count = vpl_count(vpls);
     let (specular, has_specular) = buffer.specular();
     let pass = GatherPixels {
         camera: buffer.camera.clone(),
@@ -29,6 +32,22 @@ pub(super) fn gather_pixels(
         specular: specular.sampled(),
         vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
         diffuse: diffuse.write(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
         push: GatherPixelsPush { vpl_count, has_specular },
     };
     let [width, height] = buffer.size;
@@ -48,25 +67,42 @@ pub(super) fn gather_list(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
     vpls: BufferRef<[f32; 4]>,
+    visibility: &Visibility,
     pyramid: &Pyramid,
     list: BufferRef<u32>,
 ) -> ImageRef {
-    let buffer = inputs.buffer;
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
     let irradiance = flattened(graph, buffer.size);
     graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
     let pass = GatherRegions {
         camera: buffer.camera.clone(),
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
-        planes: pyramid.planes.sampled(),
         normals: pyramid.normals.sampled(),
         vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
         list: list.texels(vk::Format::R32_UINT),
         irradiance: irradiance.modify(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
         push: GatherRegionsPush {
             size: signed(buffer.size),
             level_count: pyramid.level_count.cast_signed(),
-            vpl_count: inputs.settings.count,
+            vpl_count: vpl_count(vpls),
         },
     };
     graph.pass("diffuse/vpl/gather-regions", pass).count("regions", list, 3).threads_indirect(list, 0);
@@ -78,10 +114,12 @@ pub(super) fn gather_stencil(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
     vpls: BufferRef<[f32; 4]>,
+    visibility: &Visibility,
     pyramid: &Pyramid,
     stencil: ImageRef,
 ) -> (ImageRef, BufferRef<u32>) {
-    let buffer = inputs.buffer;
+    let (buffer, visibility) = (inputs.buffer, visibility.clone());
+    let rays = visibility.rays;
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
     graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);
@@ -89,14 +127,29 @@ pub(super) fn gather_stencil(
         camera: buffer.camera.clone(),
         depth: buffer.depth.sampled(),
         surface: buffer.surface.sampled(),
-        planes: pyramid.planes.sampled(),
         normals: pyramid.normals.sampled(),
         vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
         invocations: invocations.read_write(),
+        visibility: visibility.kind,
+        ism_resolution: visibility.ism_resolution,
+        ism_maps: visibility.ism_maps,
+        eye: buffer.camera.clone(),
+        bvh_nodes: rays.bvh_nodes,
+        bvh_triangles: rays.bvh_triangles,
+        rays: rays.rays,
+        triangles: rays.triangles,
+        corner_colors: rays.corner_colors,
+        corner_texcoords: rays.corner_texcoords,
+        materials: rays.materials,
+        material_textures: rays.material_textures,
+        texture_table: rays.texture_table,
+        texels: rays.texels,
+        alpha_masks: rays.alpha_masks,
+        vertex_colors: rays.vertex_colors,
         push: GatherStencilPush {
             size: signed(buffer.size),
             level_count: pyramid.level_count.cast_signed(),
-            vpl_count: inputs.settings.count,
+            vpl_count: vpl_count(vpls),
         },
     };
     let tests = StencilState { compare: vk::CompareOp::EQUAL, pass: vk::StencilOp::KEEP, reference: VALID };

@@ -2,9 +2,12 @@
 
 mod gather;
 mod interpolate;
+mod ism;
+mod paths;
 mod pyramid;
 mod regions;
 mod sample;
+mod visibility;
 
 use ash::vk;
 
@@ -17,6 +20,7 @@ use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::{VplSettings, VplShading};
+use visibility::{Rays, Visibility};
 
 /// What the method takes.
 pub(crate) struct VplInputs<'a> {
@@ -47,7 +51,10 @@ pub(crate) struct Vpl {
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
-    let vpls = sample::sample(graph, inputs);
+    let first_bounce = sample::sample(graph, inputs);
+    let rays = Rays::new(graph, inputs, first_bounce);
+    let vpls = paths::with_bounces(graph, inputs, &rays, first_bounce);
+    let visibility = Visibility::new(graph, inputs, rays, vpls);
     let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
     let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
     let shading = match inputs.settings.shading {
@@ -57,20 +64,25 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         chosen => chosen,
     };
     if shading == VplShading::Pixels {
-        gather::gather_pixels(graph, inputs, vpls, diffuse);
+        gather::gather_pixels(graph, inputs, vpls, &visibility, diffuse);
         return made;
     }
     let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
     let pyramid = pyramid::pyramid(graph, inputs, level_count, listed);
     made.list = pyramid.list;
     let irradiance = if let Some(list) = pyramid.list {
-        gather::gather_list(graph, inputs, vpls, &pyramid, list)
+        gather::gather_list(graph, inputs, vpls, &visibility, &pyramid, list)
     } else {
         let stencil = regions::mark(graph, inputs, &pyramid);
-        let (irradiance, invocations) = gather::gather_stencil(graph, inputs, vpls, &pyramid, stencil);
+        let (irradiance, invocations) = gather::gather_stencil(graph, inputs, vpls, &visibility, &pyramid, stencil);
         made.invocations = Some(invocations);
         irradiance
     };
     interpolate::interpolate(graph, inputs, &pyramid, irradiance, diffuse);
     made
+}
+
+/// Number of VPLs in a buffer of two texels each.
+fn vpl_count(vpls: BufferRef<[f32; 4]>) -> u32 {
+    (vpls.count() / 2) as u32
 }

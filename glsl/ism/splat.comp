@@ -1,0 +1,113 @@
+#version 460
+#include "lib/prelude.glsl"
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "ism/map.glsl"
+#include "lib/vpl.glsl"
+
+// One invocation draws one point of the scene's surfaces into the map of one VPL (Ritschel et al. 2008). The point stands for a disc in its
+// triangle's plane, of the area that the points of a set share; it covers the texels whose centres see the disc or lie close to the point as
+// seen from the VPL. Each keeps the nearest surface: an atomic maximum of the inverse distance [1/m], whose bits order as its values.
+//
+// Discs of more than 2x2 texels are drawn by the invocations of a subgroup together, so that none waits for a near point's.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform samplerBuffer vpls;
+layout(set = 0, binding = 1) uniform samplerBuffer points;
+layout(set = 0, binding = 2) uniform samplerBuffer area_before;
+layout(set = 0, binding = 3) buffer Drawn { uint drawn[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint vpl_count;
+    uint points_of_set;
+    uint set_count;
+    uint resolution;
+    uint block_count;
+} push;
+
+// How far from a texel's centre a point of no extent is drawn, in texels.
+const float LEAST_EXTENT = 0.4;
+
+// A point in the frame of a map (glsl/ism/map.glsl).
+struct Disc {
+    vec3 position;
+    vec3 plane;
+    float least_angle;
+    ivec2 low;   // texels that it may cover
+    ivec2 size;  // 0: none
+};
+
+Disc disc_of_point(vec4 point, Vpl vpl, float radius) {
+    vec3 normal = normalize(vpl.normal);
+    Disc disc;
+    disc.position = to_map_frame(normal, point.xyz - vpl.position_rs);
+    disc.plane = to_map_frame(normal, normalize(unpack_direction_in_float_unnormalized(point.w)));
+    float distance = length(disc.position);
+    float resolution = float(push.resolution);
+    float above = distance + disc.position.z;
+    vec2 center = disc.position.xy / max(above, 1e-20);
+    float spread = 1.0 + dot(center, center);
+    disc.least_angle = LEAST_EXTENT * 4.0 / (resolution * spread);
+    float extent = max(min(radius / distance, 2.0) * 0.6 * spread, 2.2 * LEAST_EXTENT / resolution);
+    ivec2 last = ivec2(int(push.resolution) - 1);
+    disc.low = clamp(ivec2(floor((0.5 * (center - extent) + 0.5) * resolution)), ivec2(0), last);
+    ivec2 high = clamp(ivec2(floor((0.5 * (center + extent) + 0.5) * resolution)), ivec2(0), last);
+    // Below the map, or so close to edge-on that it hides nothing: the VPL's own surface is.
+    bool hides = point.w > 0.0 && max3(vpl.strength) > 0.0 && above > 0.3 * distance
+                 && abs(dot(disc.plane, disc.position)) > 0.01 * distance;
+    disc.size = hides ? high - disc.low + 1 : ivec2(0);
+    return disc;
+}
+
+void draw_texel(uint first, ivec2 texel, vec3 position, vec3 plane, float least_angle, float radius) {
+    vec3 direction = direction_of_map(center_of_texel(texel, float(push.resolution)));
+    float nearness = inversesqrt(dot(position, position));
+    float inverse = dot(plane, direction) / dot(plane, position);
+    vec3 off = direction - inverse * position;
+    vec3 apart = direction - nearness * position;
+    bool covered = dot(off, off) <= radius * radius * inverse * inverse || dot(apart, apart) <= least_angle * least_angle;
+    if (inverse > 0.0 && covered) {
+        uint place = first + uint(texel.y) * push.resolution + uint(texel.x);
+        atomicMax(drawn[place], floatBitsToUint(min(inverse, 2.0 * nearness)));
+    }
+}
+
+void main() {
+    uint number = gl_GlobalInvocationID.x;
+    float area = texelFetch(area_before, int(push.block_count)).x / float(push.points_of_set);
+    float radius = sqrt(area * INVERSE_PI);
+    for (uint k = gl_WorkGroupID.y; k < push.vpl_count; k += gl_NumWorkGroups.y) {
+        uint first = k * push.resolution * push.resolution;
+        Vpl vpl = unpack_vpl(texelFetch(vpls, 2 * int(k)), texelFetch(vpls, 2 * int(k) + 1));
+        vec4 point = vec4(0.0);
+        if (number < push.points_of_set) {
+            point = texelFetch(points, int((k % push.set_count) * push.points_of_set + number));
+        }
+        Disc disc = disc_of_point(point, vpl, radius);
+        bool large = max(disc.size.x, disc.size.y) > 2;
+        if (!large) {
+            for (int y = 0; y < disc.size.y; ++y) {
+                for (int x = 0; x < disc.size.x; ++x) {
+                    draw_texel(first, disc.low + ivec2(x, y), disc.position, disc.plane, disc.least_angle, radius);
+                }
+            }
+        }
+        uvec4 waiting = subgroupBallot(large);
+        while (subgroupBallotBitCount(waiting) > 0u) {
+            uint lane = subgroupBallotFindLSB(waiting);
+            waiting[lane >> 5] &= waiting[lane >> 5] - 1u;
+            vec3 position = vec3(
+                subgroupShuffle(disc.position.x, lane), subgroupShuffle(disc.position.y, lane), subgroupShuffle(disc.position.z, lane));
+            vec3 plane =
+                vec3(subgroupShuffle(disc.plane.x, lane), subgroupShuffle(disc.plane.y, lane), subgroupShuffle(disc.plane.z, lane));
+            float least_angle = subgroupShuffle(disc.least_angle, lane);
+            ivec2 low = ivec2(subgroupShuffle(disc.low.x, lane), subgroupShuffle(disc.low.y, lane));
+            ivec2 size = ivec2(subgroupShuffle(disc.size.x, lane), subgroupShuffle(disc.size.y, lane));
+            for (int index = int(gl_SubgroupInvocationID); index < size.x * size.y; index += int(gl_SubgroupSize)) {
+                draw_texel(first, low + ivec2(index % size.x, index / size.x), position, plane, least_angle, radius);
+            }
+        }
+    }
+}

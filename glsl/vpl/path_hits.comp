@@ -1,0 +1,46 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/microfacet.glsl"
+#include "lib/sobol.glsl"
+#include "lib/vpl.glsl"
+#include "vpl/paths.glsl"
+#include "vpl/rays.glsl"
+
+// One invocation sends the light of one VPL on in a random direction, cosine-distributed as a Lambertian surface reflects it, and finds
+// what it meets (Keller 1997): distance [m], barycentric coordinates of corners 1 and 2, bits of the triangle's number.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform samplerBuffer vpls;
+layout(set = 0, binding = 1) uniform usamplerBuffer bvh_nodes;
+layout(set = 0, binding = 2) uniform samplerBuffer bvh_triangles;
+layout(set = 0, binding = 3) uniform RaysBlock { VplRays rays; };
+layout(set = 0, binding = 4) uniform usamplerBuffer sobol;
+layout(set = 0, binding = 5) writeonly buffer Hits { vec4 hits[]; };
+
+layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
+
+#include "lib/ray_offset.glsl"
+#include "path/cutouts.glsl"
+#include "lib/bvh.glsl"
+
+void main() {
+    uint child = gl_GlobalInvocationID.x;
+    if (child >= push.bounce.child_count) {
+        return;
+    }
+    vec4 random = sobol_sample(sobol, child, seed_of_bounce(push.bounce));
+    int parent = int(parent_of_path(push.bounce, child, random.z));
+    Vpl vpl = unpack_vpl(texelFetch(vpls, 2 * parent), texelFetch(vpls, 2 * parent + 1));
+    vec4 found = vec4(0.0, 0.0, 0.0, uintBitsToFloat(NO_TRIANGLE));
+    if (max3(vpl.strength) > 0.0) {
+        float radius = sqrt(random.x);
+        float azimuth = 2.0 * PI * random.y;
+        vec3 local = vec3(radius * cos(azimuth), radius * sin(azimuth), sqrt(max(1.0 - random.x, 1e-7)));
+        vec3 normal = normalize(vpl.normal);
+        vec3 origin = offset_ray_origin(vpl.position_rs + rays.shift, normal) + normal * rays.offset;
+        Hit hit = closest_hit(origin, to_world(frame_around(normal), local), 3e38);
+        found = vec4(hit.distance, hit.barycentric, uintBitsToFloat(hit.triangle));
+    }
+    hits[child] = found;
+}

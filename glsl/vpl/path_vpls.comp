@@ -1,0 +1,122 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/brdf.glsl"
+#include "lib/sobol.glsl"
+#include "lib/texels.glsl"
+#include "lib/traced_scene.glsl"
+#include "lib/vpl.glsl"
+#include "vpl/paths.glsl"
+#include "vpl/rays.glsl"
+
+// One invocation makes a VPL where a path met a surface (Keller 1997). With Φ the flux of the VPL that it left, which n of N of its bounce
+// do, and ρ = indirect_diffuse_albedo() there,
+//
+//   Φ' = Φ · N/n · ρ       A' = 1/D       D = n/N · Σ_i (n_i·−ω)⁺ (n_y·ω)⁺ / (π(d² + A_i/π))
+//
+// in W and m². ΣΦ' over a bounce is on average what the scene reflects of the bounce before. D is the density of the bounce's VPLs
+// around y, over all from which a path may have come there, so that the disc of each has the area which it stands for; what hides them from
+// y is left out of it. A disc is no wider than its path is long.
+
+layout(local_size_x = 64) in;
+
+// The MATERIAL_ bits of the texture kinds that any material has.
+layout(constant_id = 0) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
+layout(constant_id = 1) const uint VERTEX_COLORS = 1u;
+
+layout(set = 0, binding = 0) uniform samplerBuffer hits;
+layout(set = 0, binding = 1) uniform RaysBlock { VplRays rays; };
+layout(set = 0, binding = 2) uniform usamplerBuffer sobol;
+layout(set = 0, binding = 3) uniform usamplerBuffer triangles;
+layout(set = 0, binding = 4) uniform samplerBuffer corner_colors;
+layout(set = 0, binding = 5) uniform samplerBuffer corner_texcoords;
+layout(set = 0, binding = 6) uniform usamplerBuffer materials;
+layout(set = 0, binding = 7) uniform usamplerBuffer material_textures;
+layout(set = 0, binding = 8) uniform usamplerBuffer texture_table;
+layout(set = 0, binding = 9) uniform samplerBuffer texels;
+layout(set = 0, binding = 10) buffer Vpls { vec4 vpls[]; };
+
+layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
+
+// Parents that the density is taken over, at most; of more, every k-th.
+const uint DENSITY_PARENTS = 256u;
+
+vec4 sample_use(uint material, uint use_number, vec4 sets) {
+    TextureUse use = load_texture_use(material_textures, material, use_number);
+    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
+    uvec4 entry = texelFetch(texture_table, int(use.layer));
+    return sample_level(texels, entry, 0, vec2(dot(use.u_row, uv), dot(use.v_row, uv)));
+}
+
+// The textures that the diffuse lobe depends on, one after the other through one piece of code.
+void apply_textures(inout MaterialPoint point, uint kinds, uint index, vec4 sets) {
+    [[dont_unroll]] for (uint use = 0u; use < 7u; ++use) {
+        if ((kinds & (MATERIAL_BASE_COLOR_TEXTURE << use)) == 0u) {
+            continue;
+        }
+        vec4 texel = sample_use(index, use, sets);
+        if (use == USE_BASE_COLOR) {
+            point.base_color *= texel;
+        } else if (use == USE_METALLIC_ROUGHNESS) {
+            point.metallic *= texel.b;
+        } else if (use == USE_SPECULAR) {
+            point.specular *= texel.a;
+        } else if (use == USE_SPECULAR_COLOR) {
+            point.specular_color *= texel.rgb;
+        } else if (use == USE_TRANSMISSION) {
+            point.transmission *= texel.r;
+        }
+    }
+}
+
+vec3 albedo_at(Triangle triangle, vec3 weights) {
+    Material material = load_material(materials, triangle.material);
+    vec4 color = VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
+    MaterialPoint point = material_factors(material, color);
+    uint kinds = material.flags & TEXTURES & ~(MATERIAL_NORMAL_TEXTURE | MATERIAL_EMISSIVE_TEXTURE);
+    if (TEXTURES != 0u && kinds != 0u) {
+        apply_textures(point, kinds, triangle.material, interpolated(corner_texcoords, triangle, weights));
+    }
+    Lobes lobes = lobes_of_material(material, point);
+    return clamp(indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90), 0.0, 1.0);
+}
+
+// D, 1/m².
+float density_of_paths(vec3 position_rs, vec3 normal) {
+    uint step = (push.bounce.parent_count + DENSITY_PARENTS - 1u) / DENSITY_PARENTS;
+    float sum = 0.0;
+    uint seen = 0u;
+    for (uint i = 0u; i < push.bounce.parent_count; i += step) {
+        uint parent = push.bounce.parents + i;
+        Vpl vpl = unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]);
+        vpl.normal = normalize(vpl.normal);
+        sum += max3(vpl.strength) > 0.0 ? vpl_form_factor(vpl, position_rs, normal) : 0.0;
+        ++seen;
+    }
+    return INVERSE_PI * sum * (float(push.bounce.child_count) / float(seen));
+}
+
+void main() {
+    uint child = gl_GlobalInvocationID.x;
+    if (child >= push.bounce.child_count) {
+        return;
+    }
+    vec4 position = pack_vpl_position(vec3(0.0), 0.0);
+    vec4 strength = pack_vpl_strength(vec3(0.0), vec3(0.0, 0.0, 1.0));
+    vec4 hit = texelFetch(hits, int(child));
+    uint index = floatBitsToUint(hit.w);
+    if (index != 0xFFFFFFFFu) {
+        uint parent = parent_of_path(push.bounce, child, sobol_sample(sobol, child, seed_of_bounce(push.bounce)).z);
+        Vpl vpl = unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]);
+        vec3 flux = vpl.strength * (PI * length(vpl.normal) * float(push.bounce.parent_count) / float(push.bounce.child_count));
+        Triangle triangle = load_triangle(triangles, index);
+        vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - rays.shift;
+        vec3 face = front_normal(triangle);
+        vec3 normal = dot(face, vpl.position_rs - position_rs) < 0.0 ? -face : face;
+        float area = min(1.0 / max(density_of_paths(position_rs, normal), 1e-30), PI * hit.x * hit.x);
+        position = pack_vpl_position(position_rs, area);
+        strength = pack_vpl_strength(flux * albedo_at(triangle, vec3(1.0 - hit.y - hit.z, hit.yz)), normal);
+    }
+    uint first = 2u * (push.bounce.children + child);
+    vpls[first] = position;
+    vpls[first + 1u] = strength;
+}

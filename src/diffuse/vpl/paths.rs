@@ -1,0 +1,102 @@
+//! Further bounces: paths from VPL to VPL through the scene's hierarchy (Keller 1997).
+//!
+//! Of the VPLs of a bounce a fixed share sends a path on, so that their number falls as the light does, and what is left of them
+//! carries all of the flux that the scene reflects. A path ends in a VPL of the surface's diffuse lobe; what a specular lobe there would send on is
+//! left out.
+
+use ash::vk;
+
+use super::VplInputs;
+use super::visibility::Rays;
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::types;
+use crate::shaders::vpl::{Copy, CopyPush, PathHits, PathHitsPush, PathVpls, PathVplsPush};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// p̄ = 1/2: VPLs of a bounce for one of the next.
+const SHARE: u32 = 2;
+
+/// VPLs of each bounce.
+fn counts(first: u32, bounces: u32) -> Vec<u32> {
+    (0..bounces).scan(first, |count, _| Some(std::mem::replace(count, count.div_ceil(SHARE)))).collect()
+}
+
+/// Declares the passes that add the bounces beyond the first to `first_bounce`; returns the VPLs of all.
+pub(super) fn with_bounces(
+    graph: &mut Graph<'_>,
+    inputs: &VplInputs<'_>,
+    rays: &Rays,
+    first_bounce: BufferRef<[f32; 4]>,
+) -> BufferRef<[f32; 4]> {
+    let Some(traced) = inputs.traced.filter(|_| inputs.settings.bounces > 1) else { return first_bounce };
+    let counts = counts(inputs.settings.count, inputs.settings.bounces);
+    let all: u32 = counts.iter().sum();
+    let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
+    let texel_count = 2 * counts[0];
+    let pass =
+        Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.write(), push: CopyPush { texel_count } };
+    graph.pass("diffuse/vpl/copy", pass).threads([texel_count, 1, 1]);
+
+    let mut parents = 0;
+    for (number, pair) in (2..).zip(counts.windows(2)) {
+        let [parent_count, child_count] = [pair[0], pair[1]];
+        let children = parents + parent_count;
+        let bounce = types::Bounce { parents, parent_count, children, child_count, number };
+        let hits = graph.buffer::<[f32; 4]>(&format!("vpl.path_hits.{number}"), child_count as usize);
+        let pass = PathHits {
+            vpls: vpls.texels(FLOATS),
+            bvh_nodes: rays.bvh_nodes.clone(),
+            bvh_triangles: rays.bvh_triangles.clone(),
+            rays: rays.rays.clone(),
+            sobol: rays.sobol.clone(),
+            hits: hits.write(),
+            triangles: rays.triangles.clone(),
+            corner_colors: rays.corner_colors.clone(),
+            corner_texcoords: rays.corner_texcoords.clone(),
+            materials: rays.materials.clone(),
+            material_textures: rays.material_textures.clone(),
+            texture_table: rays.texture_table.clone(),
+            texels: rays.texels.clone(),
+            alpha_masks: rays.alpha_masks,
+            vertex_colors: rays.vertex_colors,
+            push: PathHitsPush { bounce },
+        };
+        let name = format!("diffuse/vpl/path-hits-{number}");
+        graph.pass(&name, pass).note("rays", u64::from(child_count)).threads([child_count, 1, 1]);
+        let pass = PathVpls {
+            hits: hits.texels(FLOATS),
+            rays: rays.rays.clone(),
+            sobol: rays.sobol.clone(),
+            triangles: rays.triangles.clone(),
+            corner_colors: rays.corner_colors.clone(),
+            corner_texcoords: rays.corner_texcoords.clone(),
+            materials: rays.materials.clone(),
+            material_textures: rays.material_textures.clone(),
+            texture_table: rays.texture_table.clone(),
+            texels: rays.texels.clone(),
+            vpls: vpls.read_write(),
+            textures: traced.texture_kinds,
+            vertex_colors: rays.vertex_colors,
+            push: PathVplsPush { bounce },
+        };
+        let name = format!("diffuse/vpl/path-vpls-{number}");
+        graph.pass(&name, pass).note("VPLs", u64::from(child_count)).threads([child_count, 1, 1]);
+        parents = children;
+    }
+    vpls
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_bounce_has_half_the_lights_of_the_one_before() {
+        assert_eq!(counts(256, 4), [256, 128, 64, 32]);
+        assert_eq!(counts(1, 3), [1, 1, 1]);
+        assert_eq!(counts(0, 2), [0, 0]);
+        assert_eq!(counts(5, 1), [5]);
+    }
+}
