@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#define NODES_ACCESS writeonly
 #include "photon_lists/append.glsl"
 
 // One fragment of an opaque primitive: a node of its texel's list, whatever lies before it.

@@ -1,3 +1,5 @@
+// The including shader defines NODES_ACCESS: `writeonly` for the pass that starts from no nodes, nothing for one that adds to them.
+//
 // Puts a node at the head of its texel's list (Quyen 2014, alg. 3.4). Nodes beyond the pool's capacity are counted, but not stored.
 #include "lib/octahedral.glsl"
 #include "photon_lists/draw.glsl"
@@ -5,7 +7,7 @@
 
 layout(set = 0, binding = 6) buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 7) buffer NodeCount { uint node_count[]; };
-layout(set = 0, binding = 8) buffer Nodes { uvec4 nodes[]; };
+layout(set = 0, binding = 8) NODES_ACCESS buffer Nodes { uvec4 nodes[]; };
 
 void append(float depth, vec3 normal, uint material) {
     uint index = atomicAdd(node_count[0], 1u);

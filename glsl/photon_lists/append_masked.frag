@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#define NODES_ACCESS
 #include "photon_lists/append.glsl"
 #include "photon_lists/masked.glsl"
 

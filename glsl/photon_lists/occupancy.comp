@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform samplerBuffer views;
 layout(set = 0, binding = 1) uniform usamplerBuffer pixels;
 layout(set = 0, binding = 2) uniform usamplerBuffer nodes;
-layout(set = 0, binding = 3) buffer Blocks { uvec4 blocks[]; };
+layout(set = 0, binding = 3) writeonly buffer Blocks { uvec4 blocks[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint resolution;

@@ -170,6 +170,18 @@ impl Stage {
     }
 }
 
+/// All directions from the middle of the scene, neighbours side by side.
+fn coherent_rays(side: u16) -> Vec<Ray> {
+    let at = |index: u16| (2.0 * f32::from(index) + 1.0) / f32::from(side) - 1.0;
+    let places = (0..side).flat_map(|y| (0..side).map(move |x| (at(x), at(y))));
+    let way = |(x, y): (f32, f32)| {
+        let z = 1.0 - x.abs() - y.abs();
+        let fold = (-z).max(0.0);
+        Vec3::new(x - fold * x.signum(), y - fold * y.signum(), z).normalize()
+    };
+    places.map(|place| ray(Vec3::new(0.013, 0.017, 0.019), way(place), f32::MAX)).collect()
+}
+
 fn direction(random: &mut Random) -> Vec3 {
     loop {
         let point = random.point();
@@ -263,11 +275,11 @@ fn rays_against_the_hierarchy() {
                     }
                 }
                 let settings = photon_settings(&[("resolution", &resolution), ("trace", &trace)]);
-                let rays = stage.surface_rays(38_000, 3);
+                for rays in [stage.surface_rays(38_000, 3), coherent_rays(195)] {
                 let first = stage.trace(&settings, &rays);
                 let before = cpu_ms();
-                let runs: Vec<Found> = (1..6).map(|salt| stage.trace_again(&settings, &rays, salt)).collect();
-                let cpu = (cpu_ms() - before) / 5.0;
+                let runs: Vec<Found> = (1..21).map(|salt| stage.trace_again(&settings, &rays, salt)).collect();
+                let cpu = (cpu_ms() - before) / 20.0;
                 let least = runs.iter().map(|run| run.ms(&trace)).fold(f64::MAX, f64::min);
                 println!(
                     "{name:14} {resolution} {trace} lists {:.2} ms (blocks {:.2}), trace {least:.2} ms, cpu {cpu:.2} ms, steps {:.1}, nodes {}",
@@ -276,6 +288,7 @@ fn rays_against_the_hierarchy() {
                     first.work("march.0", "steps") as f64 / rays.len() as f64,
                     first.work("lists", "nodes"),
                 );
+                }
             }
         }
     }

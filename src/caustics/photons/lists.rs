@@ -149,7 +149,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         views: lists.views(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
-        nodes: lists.nodes.read_write(),
+        nodes: lists.nodes.write(),
         push: AppendPush { view_index: 0, view_count, resolution, capacity },
     };
     let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
@@ -197,7 +197,7 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
         views: lists.views(),
         pixels: lists.pixel_texels(),
         nodes: lists.node_texels(),
-        blocks: blocks.slices.read_write(),
+        blocks: blocks.slices.write(),
         push: OccupancyPush { resolution, view_count },
     };
     graph.pass("caustics/photons/lists-blocks.1", finest).threads(threads(1));
