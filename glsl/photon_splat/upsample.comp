@@ -73,8 +73,9 @@ void main() {
     int columns = tiles_a_row(lattice_size(push.image_size, push.downscale));
     ivec2 corner = TILE_SIDE * push.downscale * ivec2(tile % columns, tile / columns);
     vec2 steps = 2.0 * vec2(length(camera.right_scaled), length(camera.down_scaled)) / vec2(push.image_size);
-    for (int block = 0; block < push.downscale * push.downscale; ++block) {
-        ivec2 pixel = corner + TILE_SIDE * ivec2(block % push.downscale, block / push.downscale) + sample_of_invocation(gl_LocalInvocationIndex);
+    for (int part = 0; part < 4 * push.downscale * push.downscale; ++part) {
+        ivec2 block = ivec2(part >> 2) / ivec2(1, push.downscale) % push.downscale;
+        ivec2 pixel = corner + TILE_SIDE * block + sample_of_invocation(gl_LocalInvocationIndex, part & 3);
         if (is_inside(pixel, push.image_size)) {
             Receiver at = load_receiver(camera, depth, surface, pixel, push.image_size);
             float along = camera.depth_range > 0.0 ? 1.0 : dot(at.position_rs - camera.position_rs, camera.forward);

@@ -182,13 +182,15 @@ fn a_photon_delivers_its_flux_whatever_its_radius() {
 const CASES: [(usize, f64, f64); 6] =
     [(38_000, 8.0, 1.0), (38_000, 8.0, 0.4), (200_000, 8.0, 1.0), (200_000, 3.5, 1.0), (200_000, 3.5, 0.4), (0, 1.0, 1.0)];
 
-/// Seconds that the threads of a software driver have computed, on Linux.
+/// Seconds that all threads but this one have computed, on Linux: those of a software driver.
 fn driver_seconds() -> f64 {
+    let own = std::fs::read_link("/proc/thread-self").unwrap_or_default();
     let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-    let read = |path: std::path::PathBuf| std::fs::read_to_string(path).unwrap_or_default();
-    let of_driver = tasks.map(|task| task.path()).filter(|path| !read(path.join("comm")).starts_with("gpu_tests"));
-    let nanoseconds = |stat: String| stat.split(' ').next().and_then(|first| first.parse::<f64>().ok()).unwrap_or(0.0);
-    of_driver.map(|path| nanoseconds(read(path.join("schedstat"))) * 1e-9).sum()
+    let others = tasks.map(|task| task.path()).filter(|path| path.file_name() != own.file_name());
+    let nanoseconds = |path: std::path::PathBuf| -> Option<f64> {
+        std::fs::read_to_string(path.join("schedstat")).ok()?.split(' ').next()?.parse().ok()
+    };
+    others.filter_map(nanoseconds).sum::<f64>() * 1e-9
 }
 
 /// Milliseconds of the splatting's passes, at best, and of a frame in processor time over two cores, which other work disturbs less.
