@@ -2,7 +2,7 @@
 #include "lib/prelude.glsl"
 #include "photon_splat/listed_tile.glsl"
 
-// Sets the sums of one sample of a tile that photons reach to zero.
+// Sets the sums of the samples of a tile that photons reach to zero, an invocation every 64th word.
 
 layout(local_size_x = 64) in;
 
@@ -15,9 +15,9 @@ layout(push_constant, scalar) uniform Push { uint reserved; } push;
 void main() {
     int tile = listed_tile(state, tiles);
     if (tile != NO_TILE) {
-        uint first = 8u * (64u * uint(tile) + gl_LocalInvocationIndex);
-        for (uint word = first; word < first + 8u; ++word) {
-            sums[word] = 0u;
+        int first = 8 * TILE_SAMPLES * tile;
+        for (int word = int(gl_LocalInvocationIndex); word < 8 * TILE_SAMPLES; word += 64) {
+            sums[first + word] = 0u;
         }
     }
 }

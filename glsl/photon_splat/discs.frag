@@ -45,12 +45,12 @@ void main() {
     if (receiver.valid && weight > 0.0) {
         ivec2 size = lattice_size(push.image_size, push.downscale);
         ivec2 tile = place / TILE_SIDE;
-        uint index = uint(tile.y * tiles_a_row(size) + tile.x);
-        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, int(index)).x), TERM_BITS);
-        uint word = 8u * (64u * index + invocation_of_sample(place));
-        vec3 terms = irradiance * (weight * scale);
-        add(word, to_fixed(terms.x));
-        add(word + 1u, to_fixed(terms.y));
-        add(word + 2u, to_fixed(terms.z));
+        int index = tile.y * tiles_a_row(size) + tile.x;
+        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x), TERM_BITS);
+        uint word = 8u * uint(TILE_SAMPLES * index + index_in_tile(place));
+        uvec3 terms = to_fixed(irradiance * (weight * scale));
+        add(word, terms.x);
+        add(word + 1u, terms.y);
+        add(word + 2u, terms.z);
     }
 }

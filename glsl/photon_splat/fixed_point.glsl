@@ -8,12 +8,12 @@ float fixed_point_scale(float peak, int bits) {
     return uintBitsToFloat(uint(127 + bits - exponent) << 23);
 }
 
-uint to_fixed(float scaled) {
-    return uint(int(scaled + 0.5));
+uvec3 to_fixed(vec3 scaled) {
+    return uvec3(ivec3(scaled + 0.5));
 }
 
-float from_fixed(uint low, uint high, float scale) {
-    return (float(high) * 4294967296.0 + float(low)) / scale;
+vec3 from_fixed(uvec3 low, uvec3 high, float scale) {
+    return (vec3(high) * 4294967296.0 + vec3(low)) / scale;
 }
 
 #endif

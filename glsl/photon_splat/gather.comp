@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #include "photon_splat/answer.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/fixed_point.glsl"
@@ -7,9 +9,12 @@
 #include "photon_splat/receiver.glsl"
 #include "photon_splat/listed_tile.glsl"
 
-// The caustic irradiance of one sample, E(x) = Σ_p Φ_p·K(d_p/h_p)/h_p² (photon_splat/disc.glsl), over the photons in the cells around it.
+// The caustic irradiance of four samples, E(x) = Σ_p Φ_p·K(d_p/h_p)/h_p² (photon_splat/disc.glsl), over the photons in the cells around it.
 // At full size the slot `caustics` in W/(m²·sr) (photon_splat/answer.glsl), else E in W/m² for upsample.comp. Quyen 2014, section 3.3.2.3,
 // gathered instead of blended.
+//
+// The eight invocations of a block of 8×4 samples first test eight photons at a time, one each, against a sphere around the block's surfaces;
+// all then take those that pass, one after the other.
 
 layout(local_size_x = 64) in;
 
@@ -22,8 +27,10 @@ layout(set = 0, binding = 5) uniform usamplerBuffer tiles;
 layout(set = 0, binding = 6) uniform usamplerBuffer tile_peaks;
 layout(set = 0, binding = 7) uniform usamplerBuffer levels;
 layout(set = 0, binding = 8) uniform usamplerBuffer cell_starts;
-layout(set = 0, binding = 9) uniform usamplerBuffer sorted_discs;
-layout(set = 0, binding = 10, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 9) uniform samplerBuffer sorted_centers;
+layout(set = 0, binding = 10) uniform samplerBuffer sorted_normals;
+layout(set = 0, binding = 11) uniform samplerBuffer sorted_irradiances;
+layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D result;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
@@ -33,67 +40,116 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;
 } push;
 
-// Each term is at most 2^26, each sum of MOST_TERMS of them below 2^32; then they go into 64 bits.
-const int TERM_BITS = 26;
-const int MOST_TERMS = 32;
+// Each term is at most 2^28, so that eight of them stay below 2^32; then they go into 64 bits.
+const int TERM_BITS = 28;
 
-uvec3 sum_low = uvec3(0u);
-uvec3 sum_high = uvec3(0u);
+// Four samples an invocation, which share the loads of a photon.
+Receiver receivers[4];
+uvec3 sums_low[4];
+uvec3 sums_high[4];
 
-void add_run(Receiver receiver, int first, int end, float scale) {
-    uvec3 sum = uvec3(0u);
-    for (int index = first; index < end; ++index) {
-        vec4 place = uintBitsToFloat(texelFetch(sorted_discs, 2 * index));
-        vec3 offset = (receiver.position_rs - place.xyz) * place.w;
-        float height_limit = allowed_height(place.w, push.tolerance);
-        if (dot(offset, offset) < 1.0 + height_limit * height_limit) {
-            uvec4 disc = texelFetch(sorted_discs, 2 * index + 1);
-            float weight = scale * disc_weight(offset, receiver.normal, unpack_direction(disc.w), height_limit);
-            vec3 terms = uintBitsToFloat(disc.xyz) * weight;
-            sum += uvec3(to_fixed(terms.x), to_fixed(terms.y), to_fixed(terms.z));
-        }
+shared vec3 lows[64];
+shared vec3 highs[64];
+
+// A sphere around the surfaces of the invocation's block; a negative radius where there is none.
+vec4 bounding_sphere() {
+    vec3 low = vec3(1e30);
+    vec3 high = vec3(-1e30);
+    [[unroll]] for (int which = 0; which < 4; ++which) {
+        low = receivers[which].valid ? min(low, receivers[which].position_rs) : low;
+        high = receivers[which].valid ? max(high, receivers[which].position_rs) : high;
     }
-    sum_low += sum;
-    sum_high += uvec3(lessThan(sum_low, sum));
+    lows[gl_LocalInvocationIndex] = low;
+    highs[gl_LocalInvocationIndex] = high;
+    barrier();
+    uint first = gl_LocalInvocationIndex & ~7u;
+    [[dont_unroll]] for (uint other = first; other < first + 8u; ++other) {
+        low = min(low, lows[other]);
+        high = max(high, highs[other]);
+    }
+    return low.x > high.x ? vec4(0.0, 0.0, 0.0, -1.0) : vec4(0.5 * (low + high), 0.5001 * length(high - low));
 }
 
-void add_level(Receiver receiver, ivec2 block, int level, float scale) {
+bool may_reach(vec4 center, vec4 sphere) {
+    float height_limit = allowed_height(center.w, push.tolerance);
+    vec3 offset = (sphere.xyz - center.xyz) * center.w;
+    float reach = sqrt(1.0 + height_limit * height_limit) + sphere.w * center.w;
+    return dot(offset, offset) < reach * reach;
+}
+
+void add_run(vec4 sphere, int first, int end, float scale) {
+    uint width = min(gl_SubgroupSize, 8u);
+    uint lane = gl_SubgroupInvocationID & (width - 1u);
+    uint shift = gl_SubgroupInvocationID - lane;
+    for (; first < end; first += int(width)) {
+        int candidate = min(first + int(lane), end - 1);
+        bool near = may_reach(texelFetch(sorted_centers, candidate), sphere) && first + int(lane) < end;
+        uint passed = subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u);
+        uvec3 sums[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
+        while (passed != 0u) {
+            int photon = first + findLSB(passed);
+            vec4 center = texelFetch(sorted_centers, photon);
+            vec3 normal = texelFetch(sorted_normals, photon).xyz;
+            vec3 irradiance = texelFetch(sorted_irradiances, photon).xyz * scale;
+            float height_limit = allowed_height(center.w, push.tolerance);
+            [[unroll]] for (int which = 0; which < 4; ++which) {
+                vec3 offset = (receivers[which].position_rs - center.xyz) * center.w;
+                sums[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, height_limit));
+            }
+            passed &= passed - 1u;
+        }
+        [[unroll]] for (int which = 0; which < 4; ++which) {
+            sums_low[which] += sums[which];
+            sums_high[which] += uvec3(lessThan(sums_low[which], sums[which]));
+        }
+    }
+}
+
+void add_level(vec4 sphere, ivec2 block, int level, float scale) {
     uvec4 cells = texelFetch(levels, level);
-    ivec4 around = cells_around(block, block + ivec2(3, 1), 0.0, level, cells);
+    ivec4 around = cells_around(block, block + BLOCK - 1, 0.0, level, cells);
     for (int y = around.y; y <= around.w; ++y) {
         int first = int(texelFetch(cell_starts, cell_index(ivec2(around.x, y), cells)).x);
         int end = int(texelFetch(cell_starts, cell_index(ivec2(around.z + 1, y), cells)).x);
-        for (; first < end; first += MOST_TERMS) {
-            add_run(receiver, first, min(first + MOST_TERMS, end), scale);
-        }
+        add_run(sphere, first, end, scale);
     }
+}
+
+void store(ivec2 place, vec3 irradiance) {
+    vec3 light = irradiance;
+    if (push.downscale == 1) {
+        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, place, 0) : vec4(0.0);
+        light = answer(irradiance, texelFetch(surface, place, 0), lobe);
+    }
+    imageStore(result, place, vec4(light, 1.0));
 }
 
 void main() {
     int tile = listed_tile(state, tiles);
     ivec2 size = lattice_size(push.image_size, push.downscale);
-    ivec2 place = sample_of_tile(tile, size);
-    if (tile == NO_TILE || !is_inside(place, size)) {
-        return;
+    [[unroll]] for (int which = 0; which < 4; ++which) {
+        ivec2 place = sample_of_tile(max(tile, 0), size, which);
+        ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
+        bool wanted = tile != NO_TILE && is_inside(place, size);
+        receivers[which] = load_receiver(camera, depth, surface, wanted ? pixel : ivec2(-1), push.image_size);
+        sums_low[which] = uvec3(0u);
+        sums_high[which] = uvec3(0u);
     }
-    ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
-    Receiver receiver = load_receiver(camera, depth, surface, pixel, push.image_size);
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x), TERM_BITS);
-    if (receiver.valid) {
+    vec4 sphere = bounding_sphere();
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x), TERM_BITS);
+    if (sphere.w >= 0.0) {
         uint filled = texelFetch(state, int(STATE_LEVELS)).x;
-        ivec2 block = place & ~ivec2(3, 1);
+        ivec2 block = sample_of_tile(tile, size, 0) & ~(BLOCK - 1);
         for (int level = 0; level < push.level_count; ++level) {
             if ((filled >> level & 1u) != 0u) {
-                add_level(receiver, block, level, scale);
+                add_level(sphere, block, level, scale);
             }
         }
     }
-    vec3 sum = vec3(
-        from_fixed(sum_low.x, sum_high.x, scale), from_fixed(sum_low.y, sum_high.y, scale),
-        from_fixed(sum_low.z, sum_high.z, scale));
-    if (push.downscale == 1) {
-        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
-        sum = answer(sum, texelFetch(surface, pixel, 0), lobe);
+    [[unroll]] for (int which = 0; which < 4; ++which) {
+        ivec2 place = sample_of_tile(max(tile, 0), size, which);
+        if (tile != NO_TILE && is_inside(place, size)) {
+            store(place, from_fixed(sums_low[which], sums_high[which], scale));
+        }
     }
-    imageStore(result, place, vec4(sum, 1.0));
 }

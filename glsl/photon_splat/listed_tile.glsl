@@ -12,9 +12,9 @@ int listed_tile(usamplerBuffer state, usamplerBuffer tiles) {
     return listed < texelFetch(state, int(STATE_LISTED)).x ? int(texelFetch(tiles, int(listed)).x) : NO_TILE;
 }
 
-ivec2 sample_of_tile(int tile, ivec2 size) {
+ivec2 sample_of_tile(int tile, ivec2 size, int which) {
     int columns = tiles_a_row(size);
-    return TILE_SIDE * ivec2(tile % columns, tile / columns) + sample_of_invocation(gl_LocalInvocationIndex);
+    return TILE_SIDE * ivec2(tile % columns, tile / columns) + sample_of_invocation(gl_LocalInvocationIndex, which);
 }
 
 #endif

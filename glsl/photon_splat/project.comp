@@ -46,31 +46,36 @@ float sample_extent(float along) {
     return max(extents.x, extents.y) * scale * float(push.downscale);
 }
 
-// Σ K(d/h)/h²·ΔA over the samples of the photon's plane.
+// Σ K(d/h)/h²·ΔA over the samples of the photon's plane n·x = c. Perspective: x = r·c/(n·r) on the ray r through a sample, and a sample
+// of area a at distance 1 stands for the area a·z³/|c|, z being the depth of x.
 float lattice_sum(Photon photon, float radius, Extent extent) {
+    bool perspective = camera.depth_range <= 0.0;
     vec3 offset = photon.position_rs - camera.position_rs;
     float plane = dot(offset, photon.normal);
-    vec3 x_step = camera.right_scaled * (2.0 / float(push.image_size.x));
-    vec3 y_step = camera.down_scaled * (2.0 / float(push.image_size.y));
-    float area = length(x_step) * length(y_step) * float(push.downscale * push.downscale);
-    bool perspective = camera.depth_range <= 0.0;
     float along_normal = dot(camera.forward, photon.normal);
+    vec3 x_step = camera.right_scaled * (2.0 * float(push.downscale) / float(push.image_size.x));
+    vec3 y_step = camera.down_scaled * (2.0 * float(push.downscale) / float(push.image_size.y));
     ivec2 first = ivec2(ceil(extent.center - extent.radius - 0.5));
     ivec2 last = ivec2(floor(extent.center + extent.radius - 0.5));
+    vec2 corner = ndc_of_pixel(first * push.downscale + push.downscale / 2, push.image_size);
+    vec3 row = corner.x * camera.right_scaled + corner.y * camera.down_scaled;
     float sum = 0.0;
-    for (int y = first.y; y <= last.y; ++y) {
-        for (int x = first.x; x <= last.x; ++x) {
-            vec2 ndc = ndc_of_pixel(ivec2(x, y) * push.downscale + push.downscale / 2, push.image_size);
-            vec3 across = ndc.x * camera.right_scaled + ndc.y * camera.down_scaled;
-            vec3 ray = perspective ? camera.forward + across : camera.forward;
-            vec3 from_start = perspective ? offset : offset - across;
-            float distance = dot(from_start, photon.normal) / dot(ray, photon.normal);
-            float area_seen = perspective ? area * distance * distance * distance / abs(plane) : area / abs(along_normal);
-            vec3 from_center = (ray * distance - from_start) / radius;
-            sum += distance > 0.0 ? kernel_shape(dot(from_center, from_center)) * area_seen : 0.0;
+    for (int y = first.y; y <= last.y; ++y, row += y_step) {
+        vec3 across = row;
+        for (int x = first.x; x <= last.x; ++x, across += x_step) {
+            vec3 ray = camera.forward + across;
+            float z = plane / dot(ray, photon.normal);
+            vec3 point = ray * z;
+            float area = z * z * z / abs(plane);
+            if (!perspective) {
+                point = across + camera.forward * ((plane - dot(across, photon.normal)) / along_normal);
+                area = 1.0 / abs(along_normal);
+            }
+            vec3 from_center = (point - offset) / radius;
+            sum += area > 0.0 ? kernel_shape(dot(from_center, from_center)) * area : 0.0;
         }
     }
-    return sum * kernel_peak() / (radius * radius);
+    return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * radius);
 }
 
 void main() {

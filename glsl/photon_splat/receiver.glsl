@@ -14,7 +14,7 @@ struct Receiver {
 
 // Of the image's pixel; one outside of it has no surface.
 Receiver load_receiver(Camera camera, sampler2D depth, usampler2D surface, ivec2 pixel, ivec2 image_size) {
-    float pixel_depth = is_inside(pixel, image_size) ? texelFetch(depth, pixel, 0).x : 0.0;
+    float pixel_depth = pixel.x >= 0 && is_inside(pixel, image_size) ? texelFetch(depth, pixel, 0).x : 0.0;
     if (pixel_depth <= 0.0) {
         return Receiver(vec3(0.0), vec3(0.0), false);
     }

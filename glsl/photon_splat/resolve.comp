@@ -5,7 +5,7 @@
 #include "photon_splat/lattice.glsl"
 #include "photon_splat/listed_tile.glsl"
 
-// Turns the sums of one sample of a tile that photons reach into what gather.comp gives.
+// Turns the sums of four samples of a tile that photons reach into what gather.comp gives.
 
 layout(local_size_x = 64) in;
 
@@ -26,22 +26,30 @@ layout(push_constant, scalar) uniform Push {
 // As in discs.frag.
 const int TERM_BITS = 30;
 
-void main() {
-    int tile = listed_tile(state, tiles);
+void resolve(int tile, int which) {
     ivec2 size = lattice_size(push.image_size, push.downscale);
-    ivec2 place = sample_of_tile(tile, size);
-    if (tile == NO_TILE || !is_inside(place, size)) {
+    ivec2 place = sample_of_tile(tile, size, which);
+    if (!is_inside(place, size)) {
         return;
     }
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
-    int first = 2 * (64 * tile + int(gl_LocalInvocationIndex));
+    int first = 2 * (TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which));
     uvec4 low = texelFetch(sums, first);
     uvec4 high = texelFetch(sums, first + 1);
     float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x), TERM_BITS);
-    vec3 sum = vec3(from_fixed(low.x, high.x, scale), from_fixed(low.y, high.y, scale), from_fixed(low.z, high.z, scale));
+    vec3 sum = from_fixed(low.xyz, high.xyz, scale);
     if (push.downscale == 1) {
         vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         sum = answer(sum, texelFetch(surface, pixel, 0), lobe);
     }
     imageStore(result, place, vec4(sum, 1.0));
+}
+
+void main() {
+    int tile = listed_tile(state, tiles);
+    if (tile != NO_TILE) {
+        [[dont_unroll]] for (int which = 0; which < 4; ++which) {
+            resolve(tile, which);
+        }
+    }
 }

@@ -2,7 +2,7 @@
 #include "lib/prelude.glsl"
 #include "photons/records.glsl"
 
-// Copies one photon's disc to its place among those of its cell.
+// Copies one photon's disc (photon_splat/disc.glsl) to its place among those of its cell, in three lists that gather.comp reads without unpacking.
 
 layout(local_size_x = 64) in;
 
@@ -10,7 +10,9 @@ layout(set = 0, binding = 0) uniform usamplerBuffer counts;
 layout(set = 0, binding = 1) uniform usamplerBuffer discs;
 layout(set = 0, binding = 2) uniform usamplerBuffer places;
 layout(set = 0, binding = 3) uniform usamplerBuffer cell_starts;
-layout(set = 0, binding = 4) writeonly buffer SortedBlock { uvec4 sorted_discs[]; };
+layout(set = 0, binding = 4) writeonly buffer CenterBlock { vec4 sorted_centers[]; };
+layout(set = 0, binding = 5) writeonly buffer NormalBlock { vec4 sorted_normals[]; };
+layout(set = 0, binding = 6) writeonly buffer IrradianceBlock { vec4 sorted_irradiances[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint stage;
@@ -28,7 +30,9 @@ void main() {
     if (place.x == NO_CELL) {
         return;
     }
-    uint target = 2u * (texelFetch(cell_starts, int(place.x)).x + place.y);
-    sorted_discs[target] = texelFetch(discs, 2 * int(index));
-    sorted_discs[target + 1u] = texelFetch(discs, 2 * int(index) + 1);
+    uint target = texelFetch(cell_starts, int(place.x)).x + place.y;
+    uvec4 disc = texelFetch(discs, 2 * int(index) + 1);
+    sorted_centers[target] = uintBitsToFloat(texelFetch(discs, 2 * int(index)));
+    sorted_normals[target] = vec4(unpack_direction(disc.w), 0.0);
+    sorted_irradiances[target] = vec4(uintBitsToFloat(disc.xyz), 0.0);
 }

@@ -5,7 +5,7 @@
 #include "photon_splat/state.glsl"
 #include "photon_splat/tile.glsl"
 
-// Lists one tile of 8×8 samples if a photon may reach it or a sample beside it, with the brightest disc among those photons.
+// Lists one tile of samples if a photon may reach it or a sample beside it, with the brightest disc among those photons.
 
 layout(local_size_x = 64) in;
 

@@ -7,7 +7,7 @@
 // The slot `caustics` of the pixels of one tile of samples: their irradiance, interpolated between samples of the same surface (Quyen 2014,
 // section 3.3.2.4), times what the surface answers.
 //
-//   E = Σ_j w_j·E_j / Σ_j w_j      w_j = bilinear · (n·n_j)⁺^k · (1 − |n·(x_j − x)|/2f)⁺
+//   E = Σ_j w_j·E_j / Σ_j w_j      w_j = bilinear · ((n·n_j)⁺)¹⁶ · (1 − |n·(x_j − x)|/2f)⁺
 //
 // f is the distance of samples at x. In the paper the last factor is 1/(1 + |Δdepth|), which depends on the unit of length and darkens
 // slanted planes. The bilinear weight is that of the 2×2 samples around; where none of them is of the pixel's surface, all of the
@@ -30,7 +30,6 @@ layout(push_constant, scalar) uniform Push {
     uint has_specular;
 } push;
 
-const float NORMAL_POWER = 16.0;
 const float LEAST_WEIGHT = 1e-3;
 
 // The irradiance of a sample times the share of its weight that surfaces decide, and that share.
@@ -39,7 +38,10 @@ vec4 weighed(Receiver at, float extent, ivec2 place) {
     Receiver other = load_receiver(camera, depth, surface, pixel, push.image_size);
     float height = abs(dot(at.normal, other.position_rs - at.position_rs));
     float cosine = max(dot(at.normal, other.normal), 0.0);
-    float weight = other.valid ? pow(cosine, NORMAL_POWER) * max(1.0 - 0.5 * height / extent, 0.0) : 0.0;
+    float power = cosine * cosine;
+    power *= power;
+    power *= power;
+    float weight = other.valid ? power * power * max(1.0 - 0.5 * height / extent, 0.0) : 0.0;
     return vec4(texelFetch(irradiance, place, 0).rgb, 1.0) * weight;
 }
 
@@ -63,17 +65,6 @@ vec3 interpolated(Receiver at, float extent, ivec2 pixel) {
     return sum.w > 0.0 ? sum.rgb / sum.w : vec3(0.0);
 }
 
-// Whether light reached one of the samples that the pixel may interpolate between.
-bool is_lit(ivec2 pixel) {
-    ivec2 size = lattice_size(push.image_size, push.downscale);
-    ivec2 middle = ivec2(floor(splat_coordinates(vec2(pixel) + 0.5, push.downscale)));
-    vec3 most = vec3(0.0);
-    for (int i = 0; i < 9; ++i) {
-        most = max(most, texelFetch(irradiance, clamp(middle + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1), 0).rgb);
-    }
-    return max3(most) > 0.0;
-}
-
 void main() {
     int tile = listed_tile(state, tiles);
     if (tile == NO_TILE) {
@@ -82,9 +73,10 @@ void main() {
     int columns = tiles_a_row(lattice_size(push.image_size, push.downscale));
     ivec2 corner = TILE_SIDE * push.downscale * ivec2(tile % columns, tile / columns);
     vec2 steps = 2.0 * vec2(length(camera.right_scaled), length(camera.down_scaled)) / vec2(push.image_size);
-    for (int block = 0; block < push.downscale * push.downscale; ++block) {
-        ivec2 pixel = corner + TILE_SIDE * ivec2(block % push.downscale, block / push.downscale) + sample_of_invocation(gl_LocalInvocationIndex);
-        if (is_inside(pixel, push.image_size) && is_lit(pixel)) {
+    for (int part = 0; part < 4 * push.downscale * push.downscale; ++part) {
+        ivec2 block = ivec2(part >> 2) / ivec2(1, push.downscale) % push.downscale;
+        ivec2 pixel = corner + TILE_SIDE * block + sample_of_invocation(gl_LocalInvocationIndex, part & 3);
+        if (is_inside(pixel, push.image_size)) {
             Receiver at = load_receiver(camera, depth, surface, pixel, push.image_size);
             float along = camera.depth_range > 0.0 ? 1.0 : dot(at.position_rs - camera.position_rs, camera.forward);
             float extent = max(steps.x, steps.y) * along * float(push.downscale);

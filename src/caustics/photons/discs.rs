@@ -13,7 +13,7 @@ use crate::vulkan::RasterState;
 pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (buffer, landed) = (splat.buffer, &splat.landed);
     // Two texels a sample: the low words of three sums, the high ones.
-    let sums = graph.buffer::<u32>("photons.sums", 8 * 64 * splat.grid.tile_count());
+    let sums = graph.buffer::<u32>("photons.sums", 8 * 256 * splat.grid.tile_count());
 
     let pass = Clear {
         state: splat.state_texels(),

@@ -7,7 +7,7 @@
 //! sticks out over its surface's edge, the part outside is lost: how large it is, nobody knows here.
 //!
 //! Two ways, [`super::discs`] and [`super::tiles`], share the first steps: photons become discs and are counted in a grid of cells
-//! (`project`), and the tiles of 8×8 samples that they may reach are listed (`touch`). Later passes run for those tiles alone; elsewhere the
+//! (`project`), and the tiles of 16×16 samples that they may reach are listed (`touch`). Later passes run for those tiles alone; elsewhere the
 //! slot is cleared. Sums are in fixed point, so that the order of photons, which differs from run to run, changes no bit.
 //!
 //! With `downscale` beyond 1 irradiance is splatted to every second or fourth pixel's surface and then interpolated ([`super::upsample`]).
@@ -35,7 +35,7 @@ pub(super) const LISTED_WORD: usize = 9;
 const TOLERANCE: f64 = 1e-3;
 
 /// Samples to a side of a tile.
-const TILE_SIDE: u32 = 8;
+const TILE_SIDE: u32 = 16;
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
 pub(super) const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -156,7 +156,7 @@ impl Splat<'_> {
         graph.fill_buffer("caustics/photons/clear-counts", self.cell_counts, 0);
         graph.fill_buffer("caustics/photons/clear-peaks", self.cell_peaks, 0);
         let (grid, stage) = (&self.grid, self.landed.stage as u32);
-        let blocks = grid.tiles().map(|tiles| tiles.div_ceil(TILE_SIDE));
+        let blocks = grid.tiles().map(|tiles| tiles.div_ceil(8));
         let pass = Start {
             counts: self.landed.counts.texels(WORDS),
             state: self.state.write(),

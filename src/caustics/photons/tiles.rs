@@ -9,13 +9,15 @@ use crate::graph::Graph;
 use crate::shaders::photon_splat::{Gather, GatherPush, Scan, ScanPush, Scatter, ScatterPush};
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Declares the passes that fill `splat.result`.
 pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (grid, landed) = (&splat.grid, &splat.landed);
     let cell_starts = graph.buffer::<u32>("photons.cell_starts", grid.cell_count as usize);
     let sorted_count = graph.buffer::<u32>("photons.sorted_count", 1);
-    let sorted_discs = graph.buffer::<[u32; 4]>("photons.sorted_discs", 2 * landed.capacity as usize);
+    let mut sorted = |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity as usize);
+    let (centers, normals, irradiances) = (sorted("centers"), sorted("normals"), sorted("irradiances"));
 
     graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
     let pass = Scan {
@@ -32,7 +34,9 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         discs: splat.discs.texels(RECORDS),
         places: splat.places.texels(vk::Format::R32G32_UINT),
         cell_starts: cell_starts.texels(WORDS),
-        sorted_discs: sorted_discs.write(),
+        sorted_centers: centers.write(),
+        sorted_normals: normals.write(),
+        sorted_irradiances: irradiances.write(),
         push: ScatterPush { stage: landed.stage as u32, reserved: 0 },
     };
     graph
@@ -51,7 +55,9 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         tile_peaks: splat.tile_peak_texels(),
         levels: grid.levels.texels(RECORDS),
         cell_starts: cell_starts.texels(WORDS),
-        sorted_discs: sorted_discs.texels(RECORDS),
+        sorted_centers: centers.texels(FLOATS),
+        sorted_normals: normals.texels(FLOATS),
+        sorted_irradiances: irradiances.texels(FLOATS),
         result: splat.result.modify(),
         gaussian: splat.gaussian,
         push: GatherPush {
