@@ -25,6 +25,7 @@ layout(push_constant, scalar) uniform Push {
 layout(location = 0) flat in vec4 center;
 layout(location = 1) flat in vec3 irradiance;
 layout(location = 2) flat in vec3 disc_normal;
+layout(location = 3) flat in vec3 squeeze;
 
 // A term fits into the low word; so many that the high word overflows are not.
 const int TERM_BITS = 30;
@@ -41,7 +42,7 @@ void main() {
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
     Receiver receiver = load_receiver(camera, depth, surface, pixel, push.image_size);
     vec3 offset = (receiver.position_rs - center.xyz) * center.w;
-    float weight = disc_weight(offset, receiver.normal, disc_normal, allowed_height(center.w, push.tolerance));
+    float weight = disc_weight(offset, receiver.normal, disc_normal, squeeze, allowed_height(center.w, push.tolerance));
     if (receiver.valid && weight > 0.0) {
         ivec2 size = lattice_size(push.image_size, push.downscale);
         ivec2 tile = place / TILE_SIDE;

@@ -18,13 +18,15 @@ layout(push_constant, scalar) uniform Push {
 layout(location = 0) flat out vec4 center;      // render space; 1/h
 layout(location = 1) flat out vec3 irradiance;  // W/m²
 layout(location = 2) flat out vec3 disc_normal;
+layout(location = 3) flat out vec3 squeeze;
 
 const uint NO_CELL = 0xFFFFFFFFu;
 
 void main() {
     int photon = gl_InstanceIndex;
-    uvec4 disc = texelFetch(discs, 2 * photon + 1);
-    center = uintBitsToFloat(texelFetch(discs, 2 * photon));
+    uvec4 disc = texelFetch(discs, 3 * photon + 1);
+    center = uintBitsToFloat(texelFetch(discs, 3 * photon));
+    squeeze = uintBitsToFloat(texelFetch(discs, 3 * photon + 2).xyz);
     irradiance = uintBitsToFloat(disc.xyz);
     disc_normal = unpack_direction(disc.w);
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);

@@ -30,7 +30,8 @@ layout(set = 0, binding = 8) uniform usamplerBuffer cell_starts;
 layout(set = 0, binding = 9) uniform samplerBuffer sorted_centers;
 layout(set = 0, binding = 10) uniform samplerBuffer sorted_normals;
 layout(set = 0, binding = 11) uniform samplerBuffer sorted_irradiances;
-layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 12) uniform samplerBuffer sorted_squeezes;
+layout(set = 0, binding = 13, rgba32f) writeonly uniform image2D result;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
@@ -91,10 +92,11 @@ void add_run(vec4 sphere, int first, int end, float scale) {
             vec4 center = texelFetch(sorted_centers, photon);
             vec3 normal = texelFetch(sorted_normals, photon).xyz;
             vec3 irradiance = texelFetch(sorted_irradiances, photon).xyz * scale;
+            vec3 squeeze = ELLIPTIC != 0u ? texelFetch(sorted_squeezes, photon).xyz : vec3(0.0);
             float height_limit = allowed_height(center.w, push.tolerance);
             [[unroll]] for (int which = 0; which < 4; ++which) {
                 vec3 offset = (receivers[which].position_rs - center.xyz) * center.w;
-                sums[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, height_limit));
+                sums[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, squeeze, height_limit));
             }
             passed &= passed - 1u;
         }

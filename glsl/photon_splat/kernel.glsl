@@ -9,6 +9,8 @@
 #include "lib/vectors.glsl"
 
 layout(constant_id = 0) const uint GAUSSIAN = 0u;
+// 1: discs may be ellipses.
+layout(constant_id = 1) const uint ELLIPTIC = 0u;
 
 // K(0), by which stored fluxes are multiplied already.
 float kernel_peak() {

@@ -24,6 +24,8 @@ layout(set = 0, binding = 6) buffer CellCountBlock { uint cell_counts[]; };
 layout(set = 0, binding = 7) buffer CellPeakBlock { uint cell_peaks[]; };  // the brightest of each cell's discs, W/m², as a float's bits
 layout(set = 0, binding = 8) buffer StateBlock { uint state[]; };
 
+layout(set = 0, binding = 9) uniform samplerBuffer ellipses;
+
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     uint stage;
@@ -46,9 +48,15 @@ float sample_extent(float along) {
     return max(extents.x, extents.y) * scale * float(push.downscale);
 }
 
+// How much shorter a unit vector looks from there.
+float foreshortening(vec3 to_eye, vec3 direction) {
+    float along = dot(to_eye, direction);
+    return sqrt(max(1.0 - along * along, 0.01));
+}
+
 // Σ K(d/h)/h²·ΔA over the samples of the photon's plane n·x = c. Perspective: x = r·c/(n·r) on the ray r through a sample, and a sample
 // of area a at distance 1 stands for the area a·z³/|c|, z being the depth of x.
-float lattice_sum(Photon photon, float radius, Extent extent) {
+float lattice_sum(Photon photon, float radius, float smaller, vec3 squeeze, Extent extent) {
     bool perspective = camera.depth_range <= 0.0;
     vec3 offset = photon.position_rs - camera.position_rs;
     float plane = dot(offset, photon.normal);
@@ -72,10 +80,12 @@ float lattice_sum(Photon photon, float radius, Extent extent) {
                 area = 1.0 / abs(along_normal);
             }
             vec3 from_center = (point - offset) / radius;
-            sum += area > 0.0 ? kernel_shape(dot(from_center, from_center)) * area : 0.0;
+            float squeezed = dot(from_center, squeeze);
+            float squared = dot(from_center, from_center) + squeezed * squeezed;
+            sum += area > 0.0 ? kernel_shape(squared) * area : 0.0;
         }
     }
-    return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * radius);
+    return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * smaller);
 }
 
 void main() {
@@ -91,13 +101,22 @@ void main() {
         float cosine = max(abs(dot(to_eye, photon.normal)), 0.1);
         float sample_across = sample_extent(dot(offset, camera.forward));
         float radius = max(photon.radius, LEAST_SAMPLES * sample_across / cosine);
+        float smaller = radius;
+        vec3 squeeze = vec3(0.0);
+        if (ELLIPTIC != 0u) {
+            vec4 axis = texelFetch(ellipses, int(index));
+            float least = LEAST_SAMPLES * sample_across;
+            radius = max(photon.radius, least / foreshortening(to_eye, cross(photon.normal, axis.xyz)));
+            smaller = min(max(axis.w, least / foreshortening(to_eye, axis.xyz)), radius);
+            squeeze = axis.xyz * sqrt(max(radius * radius / (smaller * smaller) - 1.0, 0.0));
+        }
         float height = radius * allowed_height(1.0 / radius, push.tolerance);
         Extent extent =
             disc_extent(camera, photon.position_rs, photon.normal, radius, height, push.image_size, push.downscale);
-        vec3 irradiance = photon.flux * (kernel_peak() / (radius * radius));
+        vec3 irradiance = photon.flux * (kernel_peak() / (radius * smaller));
         vec2 covered = 2.0 * extent.radius + 1.0;
-        if (radius * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
-            irradiance /= clamp(lattice_sum(photon, radius, extent), 0.5, 2.0);
+        if (smaller * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
+            irradiance /= clamp(lattice_sum(photon, radius, smaller, squeeze, extent), 0.5, 2.0);
         }
         float peak = min(max3(irradiance), 1e30);
         irradiance = clamp(irradiance, vec3(0.0), vec3(1e30));
@@ -120,8 +139,9 @@ void main() {
             atomicOr(levels_of_group, 1u << level);
         }
         places[index] = place;
-        discs[2u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(1.0 / radius));
-        discs[2u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
+        discs[3u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(1.0 / radius));
+        discs[3u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
+        discs[3u * index + 2u] = uvec4(floatBitsToUint(squeeze), 0u);
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && levels_of_group != 0u) {

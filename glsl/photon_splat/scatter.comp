@@ -2,7 +2,7 @@
 #include "lib/prelude.glsl"
 #include "photons/records.glsl"
 
-// Copies one photon's disc (photon_splat/disc.glsl) to its place among those of its cell, in three lists that gather.comp reads without unpacking.
+// Copies one photon's disc (photon_splat/disc.glsl) to its place among those of its cell, in four lists that gather.comp reads without unpacking.
 
 layout(local_size_x = 64) in;
 
@@ -13,6 +13,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer cell_starts;
 layout(set = 0, binding = 4) writeonly buffer CenterBlock { vec4 sorted_centers[]; };
 layout(set = 0, binding = 5) writeonly buffer NormalBlock { vec4 sorted_normals[]; };
 layout(set = 0, binding = 6) writeonly buffer IrradianceBlock { vec4 sorted_irradiances[]; };
+layout(set = 0, binding = 7) writeonly buffer SqueezeBlock { vec4 sorted_squeezes[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint stage;
@@ -31,8 +32,9 @@ void main() {
         return;
     }
     uint target = texelFetch(cell_starts, int(place.x)).x + place.y;
-    uvec4 disc = texelFetch(discs, 2 * int(index) + 1);
-    sorted_centers[target] = uintBitsToFloat(texelFetch(discs, 2 * int(index)));
+    uvec4 disc = texelFetch(discs, 3 * int(index) + 1);
+    sorted_centers[target] = uintBitsToFloat(texelFetch(discs, 3 * int(index)));
+    sorted_squeezes[target] = uintBitsToFloat(texelFetch(discs, 3 * int(index) + 2));
     sorted_normals[target] = vec4(unpack_direction(disc.w), 0.0);
     sorted_irradiances[target] = vec4(uintBitsToFloat(disc.xyz), 0.0);
 }

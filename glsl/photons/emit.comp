@@ -88,6 +88,12 @@ Place draw_texel(uint level, ivec2 block, float random) {
 
 #include "photons/cells.glsl"
 
+// Where the light's ray a step of tangents further meets the plane of the surface.
+vec3 position_on_plane(LightView view, CellPoint point, vec2 step, vec3 normal) {
+    vec2 tangent = point.tangent + step;
+    return position_of_texel(view, tangent, depth_of_plane(view, point.tangent, tangent, point.depth, normal));
+}
+
 // The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface.
 vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
     if (texelFetch(specular_layer, texel, 0).y != material || texelFetch(mask, texel, 0).x <= 0.0) {
@@ -158,13 +164,17 @@ void main() {
     vec3 origin_change[2];
     vec3 direction_change[2];
     vec3 normals[2];
+    vec3 bent = own;
     [[dont_unroll]] for (int axis = 0; axis < 2; ++axis) {
         vec2 step = vec2(axis == 0, axis == 1) * view.tangent_step;
-        vec3 origins = position_on_texel(view, middle, tangent + step, depth, face) - position_on_texel(view, middle, tangent - step, depth, face);
-        vec3 directions = normalize(ray_of_tangent(view, tangent + step)) - normalize(ray_of_tangent(view, tangent - step));
+        vec3 origins = position_on_plane(view, point, step, face) - position_on_plane(view, point, -step, face);
+        vec3 directions = normalize(ray_of_tangent(view, point.tangent + step)) - normalize(ray_of_tangent(view, point.tangent - step));
         origin_change[axis] = origins * (0.5 * spacing);
         direction_change[axis] = directions * (0.5 * spacing);
-        normals[axis] = normal_change(texel, ivec2(axis == 0, axis == 1), layer.y, own) * spacing;
+        vec3 change = normal_change(texel, ivec2(axis == 0, axis == 1), layer.y, own);
+        normals[axis] = change * spacing;
+        // Within the texel the normal turns as it does from one to the next.
+        bent += change * (dot(point.tangent - middle, step) / dot(step, step));
     }
     vec4 beam[3] = pack_beam(Beam(origin_change[0], origin_change[1], direction_change[0], direction_change[1]));
     uint first = ARRIVAL_BEAM_TEXELS * photon;
@@ -173,6 +183,7 @@ void main() {
     arrival_beams[first + 2u] = beam[2];
     arrival_beams[first + 3u] = vec4(normals[0], normals[1].x);
     arrival_beams[first + 4u] = vec4(normals[1].yz, 0.0, 0.0);
+    surface.x = pack_direction(normalize(bent));
     surfaces[2u * photon] = surface;
     surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), 0u);
 }

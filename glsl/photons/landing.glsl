@@ -1,12 +1,11 @@
 // What happens where a photon meets a surface: it lands if there is a diffuse lobe, and goes on if there are specular ones. Both take
 // the whole flux that arrives: what each sends out is its own factor's business.
 //
-// The disc that a landed photon is spread over has one of two radii [m], at most R/4:
+// A landed photon is spread over an ellipse by the way to its neighbours (photons/beam.glsl), or over the paper's disc of the radius [m], at
+// most R/4,
 //
 //   h = C₀·√(A/N) · d/(R·√cosθ)      Quyen 2014, section 3.3.2.3: h = C√(A/N), C = C₀/√p, p = cosθ/d², with d over the scene's radius R so
 //                                    that C₀ has no unit; A the area of the scene, N the photons sent out, d the way from the light
-//   h = C₀·√(8a/(π·cosθ))            a the area between neighbouring photons across the ray (photons/beam.glsl): for C₀ = 1, on the middle of the
-//                                    Gaussian disc as many photons count as if four were spread evenly
 //
 // θ the angle of incidence.
 
@@ -30,6 +29,7 @@ layout(set = 0, binding = 8) buffer ArrivalCountBlock { uint arrival_counts[]; }
 
 layout(set = 0, binding = 16) uniform samplerBuffer beams;
 layout(set = 0, binding = 17) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
+layout(set = 0, binding = 18) writeonly buffer EllipseBlock { vec4 ellipses[]; };
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;          // from render space to that of the traced scene
@@ -49,7 +49,7 @@ struct Landing {
     vec3 normal;        // geometric, on the arriving side
     vec3 shading_normal;
     Beam beam;          // at the surface
-    float beam_area;    // across the ray, m²
+    float spread;       // standard deviation in one dimension that the lobe gives it there, m
     bool front;
     Material material;
 };
@@ -67,9 +67,7 @@ Landing arrive(uint index, uvec4 hit) {
     Beam beam = load_beam(beams, int(RAY_BEAM_TEXELS * index));
     beam.origin_u += distance * beam.direction_u;
     beam.origin_v += distance * beam.direction_v;
-    float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
-    float spread = unpackHalf2x16(landing.photon.bits >> 16).x * distance;
-    landing.beam_area = beam_area(beam, landing.photon.direction, spread * spread / emitted);
+    landing.spread = LOBE_SPREAD * unpackHalf2x16(landing.photon.bits >> 16).x * distance;
     // Along their own rays to the plane of the surface.
     float slope = dot(landing.photon.direction, landing.normal);
     vec3 along = landing.photon.direction / min(slope, -1e-2);
@@ -81,13 +79,21 @@ Landing arrive(uint index, uvec4 hit) {
     return landing;
 }
 
-float disc_radius(Landing landing) {
-    float cosine = max(-dot(landing.normal, landing.photon.direction), 1e-3);
+Ellipse footprint(Landing landing) {
     float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
-    float of_way = inversesqrt(emitted * cosine) * landing.photon.travelled;
-    float of_beam = sqrt(8.0 * INVERSE_PI * landing.beam_area / max(cosine, 0.05));
-    float radius = push.disc_scale * (push.beams_decide != 0u ? of_beam : of_way);
-    return clamp(radius, 1e-6 * push.radius, 0.25 * push.radius);
+    float most = 0.25 * push.radius;
+    float least = 1e-6 * push.radius;
+    if (push.beams_decide == 0u) {
+        float cosine = max(-dot(landing.normal, landing.photon.direction), 1e-3);
+        float radius = clamp(push.disc_scale * inversesqrt(emitted * cosine) * landing.photon.travelled, least, most);
+        return Ellipse(radius, vec4(0.0, 0.0, 0.0, radius));
+    }
+    float share = lobe_in_disc(unpackHalf2x16(landing.photon.bits >> 16).x);
+    float drawn = landing.spread * (1.0 - share) * inversesqrt(emitted);
+    Ellipse ellipse = ellipse_of(landing.beam, landing.normal, push.disc_scale, landing.spread * share, drawn);
+    ellipse.larger = clamp(ellipse.larger, least, most);
+    ellipse.smaller.w = clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger);
+    return ellipse;
 }
 
 // All invocations of the subgroup come here; `met`: there is a surface.
@@ -101,8 +107,10 @@ void land(bool met, Landing landing, MaterialPoint point) {
     uint place;
     APPEND(counts, push.landed_stage, lands, place)
     if (lands && place < push.landed_capacity) {
+        Ellipse ellipse = footprint(landing);
         photons[2u * place] = uvec4(floatBitsToUint(photon.origin_rs), pack_direction(landing.normal));
-        photons[2u * place + 1u] = uvec4(floatBitsToUint(photon.flux), floatBitsToUint(disc_radius(landing)));
+        photons[2u * place + 1u] = uvec4(floatBitsToUint(photon.flux), floatBitsToUint(ellipse.larger));
+        ellipses[place] = ellipse.smaller;
     }
     if (push.goes_on == 0u) {
         return;

@@ -6,7 +6,8 @@
 //   hits     1   distance along the ray, as the bits of a float: HIT_NONE if there is none | the surface's own geometric normal, packed,
 //                as its winding has it | material | triangle of the traced scene, or NO_TRIANGLE where lists were traced
 //   photons  2   position in render space | geometric normal on the side that the photon arrived at, packed
-//                flux rgb in W | radius of the disc in m
+//                flux rgb in W | radius of the disc in m: of an ellipse the larger one
+//   ellipses 1   direction of the smaller radius | its length in m, where it differs
 #ifndef PHOTONS_RECORDS
 #define PHOTONS_RECORDS
 

@@ -32,18 +32,27 @@ layout(set = 0, binding = 6) writeonly buffer BeamBlock { vec4 beams[]; };
 layout(push_constant, scalar) uniform Push {
     uint stage;
     uint capacity;
+    uint beams_decide;  // 1: discs stand for lobes (photons/beam.glsl)
+    uint reserved;
 } push;
 
 // Directions nearer to the surface than this do not gain by the adjoint without bound.
 const float GRAZING = 0.01;
 
-// The standard deviation of a lobe's directions in one dimension over α: half of GGX's slopes are below α, and a mirrored direction turns by twice
-// the angle.
-const float LOBE_SPREAD = 1.7;
-
-void widen(inout PhotonRay photon, float spread) {
+// The roughest lobe on the way so far, in the upper half of the bits.
+void note_lobe(inout PhotonRay photon, float alpha) {
     float before = unpackHalf2x16(photon.bits >> 16).x;
-    photon.bits = (photon.bits & 0xFFFFu) | packHalf2x16(vec2(max(before, spread), 0.0)) << 16;
+    photon.bits = (photon.bits & 0xFFFFu) | packHalf2x16(vec2(max(before, alpha), 0.0)) << 16;
+}
+
+// From the drawn direction towards the middle of its lobe, as far as the disc stands for the lobe.
+vec3 towards_middle(vec3 drawn, vec3 viewer, float relative_ior, float alpha) {
+    vec3 middle = vec3(-viewer.xy, drawn.z < 0.0 ? -viewer.z : viewer.z);
+    if (drawn.z < 0.0 && relative_ior != 1.0) {
+        middle = refract(-viewer, vec3(0.0, 0.0, 1.0), 1.0 / relative_ior);
+    }
+    float share = dot(middle, middle) > 0.5 ? lobe_in_disc(alpha) : 0.0;
+    return normalize(mix(drawn, middle, share));
 }
 
 // How the neighbours of a photon that arrived go on.
@@ -75,6 +84,9 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out
     viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
     vec4 random = photon_random(photon.seed, push.stage + 1u);
     LobeSample drawn = sample_lobes(matter, viewer, random.z, random.xy);
+    if (push.beams_decide != 0u && drawn.density > 0.0) {
+        drawn.direction = towards_middle(drawn.direction, viewer, matter.relative_ior, matter.alpha);
+    }
     vec3 direction = to_world(frame, drawn.direction);
     float side = dot(geometric_normal, direction);
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
@@ -97,7 +109,7 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out
         photon.bits ^= PHOTON_INSIDE;
     }
     beam = scattered_beam(index, photon.direction, frame.normal, drawn.direction.z < 0.0, matter.relative_ior);
-    widen(photon, LOBE_SPREAD * matter.alpha);
+    note_lobe(photon, matter.alpha);
     photon.origin_rs += (side > 0.0 ? geometric_normal : -geometric_normal) * uintBitsToFloat(layer.z);
     photon.direction = normalize(direction);
     photon.flux = flux;

@@ -276,18 +276,18 @@ fn rays_against_the_hierarchy() {
                 }
                 let settings = photon_settings(&[("resolution", &resolution), ("trace", &trace)]);
                 for rays in [stage.surface_rays(38_000, 3), coherent_rays(195)] {
-                let first = stage.trace(&settings, &rays);
-                let before = cpu_ms();
-                let runs: Vec<Found> = (1..21).map(|salt| stage.trace_again(&settings, &rays, salt)).collect();
-                let cpu = (cpu_ms() - before) / 20.0;
-                let least = runs.iter().map(|run| run.ms(&trace)).fold(f64::MAX, f64::min);
-                println!(
-                    "{name:14} {resolution} {trace} lists {:.2} ms (blocks {:.2}), trace {least:.2} ms, cpu {cpu:.2} ms, steps {:.1}, nodes {}",
-                    first.ms("lists"),
-                    first.ms("lists-blocks"),
-                    first.work("march.0", "steps") as f64 / rays.len() as f64,
-                    first.work("lists", "nodes"),
-                );
+                    let first = stage.trace(&settings, &rays);
+                    let before = cpu_ms();
+                    let runs: Vec<Found> = (1..21).map(|salt| stage.trace_again(&settings, &rays, salt)).collect();
+                    let cpu = (cpu_ms() - before) / 20.0;
+                    let least = runs.iter().map(|run| run.ms(&trace)).fold(f64::MAX, f64::min);
+                    println!(
+                        "{name:14} {resolution} {trace} lists {:.2} ms (blocks {:.2}), trace {least:.2} ms, cpu {cpu:.2} ms, steps {:.1}, nodes {}",
+                        first.ms("lists"),
+                        first.ms("lists-blocks"),
+                        first.work("march.0", "steps") as f64 / rays.len() as f64,
+                        first.work("lists", "nodes"),
+                    );
                 }
             }
         }

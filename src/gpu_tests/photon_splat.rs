@@ -174,8 +174,14 @@ fn a_photon_delivers_its_flux_whatever_its_radius() {
 }
 
 /// Photons, their radius in pixels of 512, how much of the image they cover.
-const CASES: [(usize, f64, f64); 6] =
-    [(38_000, 8.0, 1.0), (38_000, 8.0, 0.4), (200_000, 8.0, 1.0), (200_000, 3.5, 1.0), (200_000, 3.5, 0.4), (0, 1.0, 1.0)];
+const CASES: [(usize, f64, f64); 6] = [
+    (38_000, 8.0, 1.0),
+    (38_000, 8.0, 0.4),
+    (200_000, 8.0, 1.0),
+    (200_000, 3.5, 1.0),
+    (200_000, 3.5, 0.4),
+    (0, 1.0, 1.0),
+];
 
 /// Seconds that all threads but this one have computed, on Linux: those of a software driver.
 fn driver_seconds() -> f64 {
@@ -198,9 +204,7 @@ fn times() {
     for side in choice("SPLAT_SIDES", "512 1024").split(' ').map(|side| side.parse::<u32>().expect("a number")) {
         let mut bench = Bench::new(&session, &scene, &from_above(), [side; 2]);
         let pixel = (bench.on_floor(1.0, 0.0) - bench.on_floor(0.0, 0.0)).length() * f64::from(side) / 512.0;
-        for (count, radius, spread) in
-            CASES.into_iter().take(choice("SPLAT_CASES", "9").parse().expect("a number"))
-        {
+        for (count, radius, spread) in CASES.into_iter().take(choice("SPLAT_CASES", "9").parse().expect("a number")) {
             let mut seed = 3;
             let photons: Vec<Landed> = (0..count)
                 .map(|_| {

@@ -179,7 +179,7 @@ impl<'s> Graph<'s> {
         BufferRef { id, count: elements.len(), element: PhantomData }
     }
 
-    /// A buffer of the scene, whose content `key` names.
+    /// A buffer of the scene, whose content `key` names. Whoever imports it again gets the same one.
     pub(crate) fn import_buffer<T>(
         &mut self,
         name: &str,
@@ -188,6 +188,11 @@ impl<'s> Graph<'s> {
         dependence: Dependence,
     ) -> BufferRef<T> {
         let count = usize::try_from(buffer.size).unwrap_or(0) / size_of::<T>().max(1);
+        let is_it =
+            |resource: &Resource| matches!(&resource.body, Body::ExternalBuffer(known) if Arc::ptr_eq(known, buffer));
+        if let Some(id) = self.resources.iter().position(|resource| resource.name == name && is_it(resource)) {
+            return BufferRef { id, count, element: PhantomData };
+        }
         let id = self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence));
         BufferRef { id, count, element: PhantomData }
     }

@@ -32,6 +32,7 @@ pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         tile_peaks: splat.tile_peak_texels(),
         sums: sums.read_write(),
         gaussian: splat.gaussian,
+        elliptic: splat.elliptic,
         push: DiscsPush { image_size: splat.image_size, downscale: splat.downscale, tolerance: splat.tolerance },
     };
     let state = RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, ..RasterState::default() };

@@ -10,6 +10,7 @@ use crate::frame::light_set::LightSet;
 use crate::frame::view_layout::TILE;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
+use crate::renderer::PhotonFootprint;
 use crate::shaders::photons::{Emit, EmitPush, Scatter, ScatterPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -95,7 +96,12 @@ pub(crate) fn scatter(
         specular_lobes: 1,
         transmissive: u32::from(inputs.facts.transmissive),
         first: u32::from(rays.stage == 0),
-        push: ScatterPush { stage: rays.stage as u32, capacity: rays.capacity },
+        push: ScatterPush {
+            stage: rays.stage as u32,
+            capacity: rays.capacity,
+            beams_decide: u32::from(inputs.settings.footprint == PhotonFootprint::Beam),
+            reserved: 0,
+        },
     };
     graph
         .pass(&format!("caustics/photons/scatter.{}", rays.stage), pass)

@@ -30,6 +30,7 @@ pub(crate) fn land(
     let name = format!("caustics/photons/land.{}", rays.stage);
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
+    let ellipses = if rays.stage == 0 { landed.ellipses.write() } else { landed.ellipses.modify() };
     let push = LandPush {
         shift: scene.map_or([0.0; 3], |(traced, _)| shift(data, traced)),
         stage: rays.stage as u32,
@@ -57,6 +58,7 @@ pub(crate) fn land(
                 surfaces: next.surfaces.write(),
                 beams: rays.beams.texels(FLOATS),
                 arrival_beams: next.beams.write(),
+                ellipses,
                 counts: choice.counts.read_write(),
                 arrival_counts: choice.arrival_counts.read_write(),
                 push,
@@ -74,6 +76,7 @@ pub(crate) fn land(
                 surfaces: next.surfaces.write(),
                 beams: rays.beams.texels(FLOATS),
                 arrival_beams: next.beams.write(),
+                ellipses,
                 counts: choice.counts.read_write(),
                 arrival_counts: choice.arrival_counts.read_write(),
                 triangles: bindings.triangles.clone(),

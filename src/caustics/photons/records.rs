@@ -35,6 +35,8 @@ pub(crate) struct PhotonRays {
 #[derive(Clone, Copy)]
 pub(crate) struct LandedPhotons {
     pub(crate) photons: BufferRef<[u32; 4]>,
+    /// Of each, the direction and the length of the smaller radius of its disc (glsl/photons/records.glsl).
+    pub(crate) ellipses: BufferRef<[f32; 4]>,
     pub(crate) counts: BufferRef<u32>,
     pub(crate) stage: usize,
     pub(crate) capacity: u32,
@@ -55,6 +57,7 @@ impl PhotonRays {
 impl LandedPhotons {
     pub(crate) fn declare(graph: &mut Graph<'_>, counts: BufferRef<u32>, stage: usize, capacity: u32) -> LandedPhotons {
         let photons = graph.buffer("photons.landed", PHOTON_TEXELS * capacity as usize);
-        LandedPhotons { photons, counts, stage, capacity }
+        let ellipses = graph.buffer("photons.ellipses", capacity as usize);
+        LandedPhotons { photons, ellipses, counts, stage, capacity }
     }
 }

@@ -21,7 +21,7 @@ use super::upsample::upsample;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
 use crate::graph::{ClearColor, Dependence, Graph};
-use crate::renderer::{PhotonKernel, PhotonSettings, PhotonSplatting};
+use crate::renderer::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
 use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
@@ -53,11 +53,12 @@ pub(super) struct Splat<'a> {
     pub(super) buffer: &'a GBuffer,
     pub(super) landed: LandedPhotons,
     pub(super) gaussian: u32,
+    pub(super) elliptic: u32,
     pub(super) tolerance: f32,
     pub(super) image_size: [i32; 2],
     pub(super) downscale: i32,
     pub(super) grid: Grid,
-    /// Two texels a photon (glsl/photon_splat/disc.glsl).
+    /// Three texels a photon (glsl/photon_splat/disc.glsl).
     pub(super) discs: BufferRef<[u32; 4]>,
     /// A photon's cell, and its place there.
     pub(super) places: BufferRef<[u32; 2]>,
@@ -126,11 +127,12 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         buffer,
         landed: *landed,
         gaussian: u32::from(settings.kernel == PhotonKernel::Gaussian),
+        elliptic: u32::from(settings.footprint == PhotonFootprint::Beam),
         tolerance: (inputs.length * TOLERANCE) as f32,
         image_size: buffer.size.map(u32::cast_signed),
         downscale: downscale.cast_signed(),
         grid,
-        discs: graph.buffer("photons.discs", 2 * landed.capacity as usize),
+        discs: graph.buffer("photons.discs", 3 * landed.capacity as usize),
         places: graph.buffer("photons.places", landed.capacity as usize),
         cell_counts: graph.buffer("photons.cell_counts", cells),
         cell_peaks: graph.buffer("photons.cell_peaks", cells),
@@ -167,6 +169,7 @@ impl Splat<'_> {
         let pass = Project {
             camera: self.buffer.camera.clone(),
             photons: self.landed.photons.texels(RECORDS),
+            ellipses: self.landed.ellipses.texels(vk::Format::R32G32B32A32_SFLOAT),
             counts: self.landed.counts.texels(WORDS),
             levels: grid.levels.texels(RECORDS),
             discs: self.discs.write(),
@@ -175,6 +178,7 @@ impl Splat<'_> {
             cell_peaks: self.cell_peaks.read_write(),
             state: self.state.read_write(),
             gaussian: self.gaussian,
+            elliptic: self.elliptic,
             push: ProjectPush {
                 image_size: self.image_size,
                 stage,

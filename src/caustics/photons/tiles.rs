@@ -18,6 +18,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let sorted_count = graph.buffer::<u32>("photons.sorted_count", 1);
     let mut sorted = |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity as usize);
     let (centers, normals, irradiances) = (sorted("centers"), sorted("normals"), sorted("irradiances"));
+    let squeezes = sorted("squeezes");
 
     graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
     let pass = Scan {
@@ -37,6 +38,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_centers: centers.write(),
         sorted_normals: normals.write(),
         sorted_irradiances: irradiances.write(),
+        sorted_squeezes: squeezes.write(),
         push: ScatterPush { stage: landed.stage as u32, reserved: 0 },
     };
     graph
@@ -58,8 +60,10 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_centers: centers.texels(FLOATS),
         sorted_normals: normals.texels(FLOATS),
         sorted_irradiances: irradiances.texels(FLOATS),
+        sorted_squeezes: squeezes.texels(FLOATS),
         result: splat.result.modify(),
         gaussian: splat.gaussian,
+        elliptic: splat.elliptic,
         push: GatherPush {
             image_size: splat.image_size,
             downscale: splat.downscale,
