@@ -58,7 +58,7 @@ float lobe_in_disc(float alpha) {
 
 // The standard deviation of a lobe's directions in one dimension over α: half of GGX's slopes are below α, and a mirrored direction turns by
 // twice the angle.
-const float LOBE_SPREAD = 1.7;
+const float LOBE_SPREAD = 2.2;
 
 // An ellipse in the plane of `normal`: its larger radius, and the smaller one with its direction.
 struct Ellipse {

@@ -111,6 +111,11 @@ vec3 normal_change(ivec2 texel, ivec2 step, uint material, vec3 own) {
     return (after - before) / max(sides, 1.0);
 }
 
+// Whether the surface ends beside the texel: its photons then crowd on one side of it (photons/cells.glsl).
+bool is_outline(ivec2 texel, ivec2 step) {
+    return min(texelFetch(mask, texel + step, 0).x, texelFetch(mask, texel - step, 0).x) <= 0.0;
+}
+
 void main() {
     uint photon = gl_GlobalInvocationID.x;
     if (photon >= texelFetch(choice, int(CHOICE_PHOTONS)).x) {
@@ -169,10 +174,12 @@ void main() {
         vec2 step = vec2(axis == 0, axis == 1) * view.tangent_step;
         vec3 origins = position_on_plane(view, point, step, face) - position_on_plane(view, point, -step, face);
         vec3 directions = normalize(ray_of_tangent(view, point.tangent + step)) - normalize(ray_of_tangent(view, point.tangent - step));
-        origin_change[axis] = origins * (0.5 * spacing);
-        direction_change[axis] = directions * (0.5 * spacing);
-        vec3 change = normal_change(texel, ivec2(axis == 0, axis == 1), layer.y, own);
-        normals[axis] = change * spacing;
+        ivec2 beside = ivec2(axis == 0, axis == 1);
+        float apart = is_outline(texel, beside) ? max(spacing, 1.0) : spacing;
+        origin_change[axis] = origins * (0.5 * apart);
+        direction_change[axis] = directions * (0.5 * apart);
+        vec3 change = normal_change(texel, beside, layer.y, own);
+        normals[axis] = change * apart;
         // Within the texel the normal turns as it does from one to the next.
         bent += change * (dot(point.tangent - middle, step) / dot(step, step));
     }
