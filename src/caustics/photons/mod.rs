@@ -72,7 +72,8 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
     let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
     let arrivals = Arrivals::declare(graph, capacity);
-    let scene = inputs.traced.map(|traced| (traced, traced.import(graph)));
+    let by_triangles = settings.trace == PhotonTracing::Bvh;
+    let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.import(graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
     emit::emit(graph, inputs, &views, &choice, arrivals);
     let all_rays = PhotonRays::declare(graph, 0, capacity);
