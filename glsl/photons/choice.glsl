@@ -2,7 +2,7 @@
 //
 //   0 to 2   arguments of an indirect dispatch over the blocks of the chosen level, 32x32 a group
 //   3        the level
-//   4        log₂ of the photons to a side of a texel: 0 unless the level is 0
+//   4        photons that each block of it gets
 //   5        photons that are sent out
 //   6 to 8   arguments of an indirect dispatch over them, 64 a group
 //   9        blocks listed so far
@@ -10,7 +10,7 @@
 #define PHOTONS_CHOICE
 
 const uint CHOICE_LEVEL = 3u;
-const uint CHOICE_SPLIT = 4u;
+const uint CHOICE_OF_BLOCK = 4u;
 const uint CHOICE_PHOTONS = 5u;
 const uint CHOICE_EMIT = 6u;
 const uint CHOICE_LISTED = 9u;

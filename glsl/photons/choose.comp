@@ -4,8 +4,8 @@
 #include "photons/records.glsl"
 
 // Chooses how finely light is cut into photons (Quyen 2014, section 3.3.1.1): the finest level of the mask's pyramid on which no more blocks
-// than there may be photons are not empty, one photon a block; where even every texel gets one and 4ᵏ times as many are allowed,
-// 4ᵏ a texel. Empties the counts of all stages.
+// than there may be photons are not empty, and to each of these as many photons as all may have alike. So more than half of what is allowed is
+// used, where the paper's whole levels use a quarter. Empties the counts of all stages.
 
 layout(local_size_x = 1) in;
 
@@ -28,19 +28,16 @@ void main() {
     [[dont_unroll]] while (level + 1u < push.level_count && pyramid[level] > push.most) {
         ++level;
     }
-    uint photons = min(pyramid[level], push.most);
-    uint split = 0u;
-    [[dont_unroll]] while (level == 0u && photons > 0u && photons <= push.most / 4u && split < 10u) {
-        photons *= 4u;
-        ++split;
-    }
+    uint blocks = min(pyramid[level], push.most);
+    uint of_block = blocks > 0u ? push.most / blocks : 0u;
+    uint photons = blocks * of_block;
     Level chosen = load_level(level);
     uint groups = (photons + 63u) / 64u;
     choice[0] = uint(chosen.size.x + 31) / 32u;
     choice[1] = photons > 0u ? uint(chosen.size.y + 31) / 32u : 0u;
     choice[2] = 1u;
     choice[CHOICE_LEVEL] = level;
-    choice[CHOICE_SPLIT] = split;
+    choice[CHOICE_OF_BLOCK] = of_block;
     choice[CHOICE_PHOTONS] = photons;
     choice[CHOICE_EMIT] = groups;
     choice[CHOICE_EMIT + 1u] = 1u;

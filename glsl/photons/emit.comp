@@ -13,10 +13,11 @@
 // pyramid holds, and sits on one of the block's texels, drawn with probability w/W by the flux w of that: down the pyramid, one of four
 // blocks at a time. It carries
 //
-//   Φ = Φ_texel · W/w / 4ᵏ        [W], Φ_texel = I(ω)·Δω (light_views/flux.glsl)
+//   Φ = Φ_texel · W/w / m        [W], Φ_texel = I(ω)·Δω (light_views/flux.glsl), m photons a block
 //
 // so that the photons' flux adds up to what all specular surfaces receive, silhouettes included: the paper's rule, that all four texels
-// below must be specular (Quyen 2014, section 3.3.1.1), loses them. Of 4ᵏ photons to a texel each has its cell of it.
+// below must be specular (Quyen 2014, section 3.3.1.1), loses them. Of m photons to a block each draws from its m-th of the flux, and if the
+// block is a texel, has its place in it.
 
 layout(local_size_x = 64) in;
 
@@ -50,6 +51,12 @@ float flux_of_block(uint number, ivec2 block) {
         return 0.0;
     }
     return number == 0u ? texelFetch(mask, block, 0).x : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x);
+}
+
+// From the middle of a texel, in texels: point `turn` of `count` of Hammersley's set.
+vec2 place_in_texel(uint turn, uint count) {
+    float rows = exp2(float(findMSB(2u * count - 1u)));
+    return vec2((float(turn) + 0.5) / float(count), float(bitfieldReverse(turn) >> 8) * (1.0 / 16777216.0) + 0.5 / rows) - 0.5;
 }
 
 // Where a photon sits, and W/w.
@@ -122,13 +129,13 @@ void main() {
         return;
     }
     uint level = texelFetch(choice, int(CHOICE_LEVEL)).x;
-    uint split = texelFetch(choice, int(CHOICE_SPLIT)).x;
-    uint packed_block = texelFetch(blocks, int(photon >> (2u * split))).x;
+    uint of_block = texelFetch(choice, int(CHOICE_OF_BLOCK)).x;
+    uint packed_block = texelFetch(blocks, int(photon / of_block)).x;
     uvec2 block = uvec2(packed_block & 0xFFFFu, packed_block >> 16);
-    uint cell = photon & ((1u << (2u * split)) - 1u);
-    uint number = morton_code(block) << (2u * split) | cell;
+    uint turn = photon % of_block;
+    uint number = morton_code(block) * of_block + turn;
     vec4 random = photon_random(number, 0u);
-    Place place = draw_texel(level, ivec2(block), random.x);
+    Place place = draw_texel(level, ivec2(block), (float(turn) + random.x) / float(of_block));
 
     ivec2 texel = place.texel;
     LightView view = load_view(views, texelFetch(tile_views, (texel.y >> 4) * int(push.tiles_per_row) + (texel.x >> 4)).x);
@@ -137,9 +144,8 @@ void main() {
     uvec2 layer = texelFetch(specular_layer, texel, 0).xy;
     vec2 middle = tangent_of_texel(view, vec2(texel) + 0.5);
     CellPoint point = CellPoint(middle, depth);
-    if (split > 0u) {
-        vec2 in_texel = (vec2(morton_place(cell)) + 0.5) * exp2(-float(split)) - 0.5;
-        point = point_of_cell(view, texel, in_texel, depth, unpack_direction(surface.y));
+    if (level == 0u && of_block > 1u) {
+        point = point_of_cell(view, texel, place_in_texel(turn, of_block), depth, unpack_direction(surface.y));
     }
     vec3 position = position_of_texel(view, point.tangent, point.depth);
 
@@ -151,7 +157,7 @@ void main() {
     Material material = load_material(materials, layer.y & ~SURFACE_FRONT);
     bool front = (layer.y & SURFACE_FRONT) != 0u;
     flux *= transmittance_behind(material, front, length(ray_of_tangent(view, middle)) * linear_depth(view, depth));
-    flux *= place.weight * exp2(-2.0 * float(split));
+    flux *= place.weight / float(of_block);
 
     bool is_closed = medium_of(material).is_closed;
     bool refracts = is_closed && material.ior > 0.0 && surface.w != 0u;

@@ -19,14 +19,6 @@ uint morton_code(uvec2 place) {
     return spread_bits(place.x) | spread_bits(place.y) << 1;
 }
 
-uvec2 morton_place(uint code) {
-    uvec2 x = uvec2(code, code >> 1) & 0x55555555u;
-    x = (x | x >> 1) & 0x33333333u;
-    x = (x | x >> 2) & 0x0F0F0F0Fu;
-    x = (x | x >> 4) & 0x00FF00FFu;
-    return (x | x >> 8) & 0xFFFFu;
-}
-
 // The second dimension's generator is Pascal's triangle modulo 2, the 32-fold product of which takes five steps. Bits reversed.
 uint sobol_second_reversed(uint index) {
     index ^= index >> 1 & 0x55555555u;

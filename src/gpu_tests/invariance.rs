@@ -17,7 +17,7 @@ use crate::scene::{Camera, CameraId, LightId, LightKind, NodeId, Projection, Sce
 const BOUND: f64 = 1e-3;
 
 /// Applies `transform` to everything; `scale` is the factor that it holds.
-fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
+pub(super) fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
     let mut copy = scene.clone();
     let roots: Vec<_> = scene.nodes().iter().enumerate().filter(|(_, node)| node.parent.is_none()).collect();
     for (index, node) in roots {

@@ -41,8 +41,11 @@ fn photons_carry_what_specular_surfaces_receive_however_many_they_are() {
         let found = photons(&session, &scene, &first_bounce(&most.to_string(), "128"), Timing::Frame);
         let flux = total(found.arrivals.iter().map(|photon| photon.flux));
         println!("at most {most}: {} photons of level {}, {flux} W of {expected} W", found.emitted, found.level);
-        assert!(found.emitted <= most && 8 * found.emitted >= most, "{} photons of {most}", found.emitted);
-        assert_eq!(found.emitted, found.arrivals.len());
+        assert!(found.emitted <= most && 2 * found.emitted > most, "{} photons of {most}", found.emitted);
+        let mut numbers: Vec<u32> = found.arrivals.iter().map(|photon| photon.number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        assert_eq!([found.emitted; 2], [found.arrivals.len(), numbers.len()]);
         assert!(((flux - expected) / expected).abs().max_element() < 1e-3, "{flux} W of {expected} W");
     }
 }
@@ -212,7 +215,7 @@ fn textured_and_masked_surfaces_are_found_to_the_texel() {
         }
         place(&mut scene, faces, turned(0.7, DVec3::ZERO));
         add_light(&mut scene, LightKind::Point, DVec3::new(0.05, 0.02, -0.03), DVec3::NEG_Y, INTENSITY);
-        let found = photons(&session, &scene, &first_bounce("1000000", "128"), Timing::Frame);
+        let found = photons(&session, &scene, &first_bounce("100000", "64"), Timing::Frame);
         let flux = total(found.arrivals.iter().map(|photon| photon.flux));
         // Half of the squares are holes, in all directions alike as the light is nearly in the middle.
         let expected = 4.0 * PI * intensity() * if masked { 0.5 } else { 1.0 };

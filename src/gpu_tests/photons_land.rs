@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
+use super::invariance::transformed;
 use super::path_probe::{assert_near, solid_box, sphere, turned};
 use super::photons_probe::{Photons, photon_settings, photons, total};
 use super::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad};
@@ -17,7 +18,7 @@ const INTENSITY: [f32; 3] = [2.0, 1.0, 0.25];
 fn ball(material: Material, smooth: bool) -> Scene {
     let mut scene = closed_box(2.0, lambert([0.5; 3]));
     let material = scene.add_material(material).expect("a sound material");
-    place(&mut scene, vec![sphere(32, smooth, material)], turned(0.5, DVec3::new(0.1, 0.0, -0.2)));
+    place(&mut scene, vec![sphere(24, smooth, material)], turned(0.5, DVec3::new(0.1, 0.0, -0.2)));
     add_light(&mut scene, LightKind::Point, DVec3::new(0.4, 1.5, 0.3), DVec3::NEG_Y, INTENSITY);
     scene
 }
@@ -49,16 +50,48 @@ fn received(session: &Session, scene: &Scene) -> DVec3 {
 #[test]
 fn what_leaves_a_specular_body_lands_on_the_walls() {
     let session = Session::open();
-    for (what, material, tolerance) in [
-        ("a mirror", metal(1.0, 0.0), 1e-3),
-        ("a rough mirror's first light", metal(1.0, 0.3), 0.03),
-        ("a thin shell of glass", glass(0.0, 0.0), 0.01),
-        ("a ball of glass", glass(1.0, 0.0), 0.01),
+    for (what, material, lost) in [
+        ("a mirror", metal(1.0, 0.0), 0.0),
+        // Light that rough microfacets reflect more than once.
+        ("a rough mirror", metal(1.0, 0.3), 0.03),
+        ("a thin shell of glass", glass(0.0, 0.0), 0.0),
+        ("a ball of glass", glass(1.0, 0.0), 0.0),
     ] {
         let scene = ball(material, false);
         let found = run(&session, &scene, &[("photons.bounces", "16")]);
-        println!("{what}: {:?} rays, {} landed", found.ray_counts, found.landed.len());
-        assert_near(what, landed_flux(&found), received(&session, &scene), tolerance);
+        let (landed, received) = (landed_flux(&found).x, received(&session, &scene).x);
+        // Some light goes round and round in a ball.
+        let on_its_way: f64 = found.rays.iter().map(|photon| photon.flux.x).sum();
+        println!(
+            "{what}: {landed} W of {received} W land, {on_its_way} W leave the last surface; {:?}",
+            found.ray_counts
+        );
+        assert!(landed > (0.999 - lost) * received - on_its_way && landed < 1.001 * received);
+        assert!(landed > 0.985 * received || lost > 0.0);
+    }
+}
+
+/// Nothing depends on the unit of length, nor on where the scene is.
+#[test]
+fn scale_and_place_do_not_matter() {
+    let session = Session::open();
+    let scene = ball(glass(1.0, 0.0), false);
+    let at = |scale: f64, place_at: DVec3| {
+        let transform = DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: place_at };
+        let changes = [("photons.bounces", "4"), ("photons.max", "4000")];
+        run(&session, &transformed(&scene, transform, scale), &changes)
+    };
+    let first = at(1.0, DVec3::ZERO);
+    for (scale, place_at) in [(1e-3, DVec3::ZERO), (1e3, DVec3::ZERO), (1.0, DVec3::splat(1e5))] {
+        let found = at(scale, place_at);
+        // Lights that are larger with the scene send more.
+        let ratio = landed_flux(&found).x / (landed_flux(&first).x * scale * scale);
+        println!("scale {scale}, at {place_at}: {ratio}, {:?} of {:?}", found.ray_counts, first.ray_counts);
+        assert!((ratio - 1.0).abs() < 2e-3, "scale {scale}, at {place_at}: {ratio}");
+        let mean = |photons: &Photons, scale: f64| {
+            photons.landed.iter().map(|photon| photon.radius / scale).sum::<f64>() / photons.landed.len() as f64
+        };
+        assert!((mean(&found, scale) / mean(&first, 1.0) - 1.0).abs() < 1e-2);
     }
 }
 
@@ -78,13 +111,16 @@ fn interpolated_normals_keep_the_energy() {
 fn a_slab_passes_what_fresnel_says() {
     let session = Session::open();
     let f = 0.04;
+    // Texels' middles do not lie on its edge.
+    const HALF: f64 = 0.47;
     let slab = |material: Material, thickness: f64| {
         let mut scene = floor(1.0, lambert([0.5; 3]));
         let slab = scene.add_material(material).expect("a sound material");
         let faces = if thickness > 0.0 {
-            solid_box(DVec3::new(-0.5, 0.5, -0.5), DVec3::new(0.5, 0.5 + thickness, 0.5), slab)
+            solid_box(DVec3::new(-HALF, 0.5, -HALF), DVec3::new(HALF, 0.5 + thickness, HALF), slab)
         } else {
-            vec![quad([[-0.5, 0.5, -0.5], [-0.5, 0.5, 0.5], [0.5, 0.5, 0.5], [0.5, 0.5, -0.5]], slab)]
+            let half = HALF as f32;
+            vec![quad([[-half, 0.5, -half], [-half, 0.5, half], [half, 0.5, half], [half, 0.5, -half]], slab)]
         };
         place(&mut scene, faces, DAffine3::IDENTITY);
         add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::NEG_Y, [5.0; 3]);
@@ -102,25 +138,26 @@ fn a_slab_passes_what_fresnel_says() {
     ];
     for (what, material, thickness, bounces, transmittance) in transmittances {
         let scene = slab(material, thickness);
-        // One photon a texel: the cells of texels at the outline reach over it.
-        let found = run(&session, &scene, &[("photons.bounces", bounces), ("photons.max", "5000")]);
+        let found = run(&session, &scene, &[("photons.bounces", bounces)]);
         let incident = received(&session, &scene);
         // α = 10⁻³ sends a little elsewhere.
-        assert_near(what, landed_flux(&found) / incident, transmittance, 0.01);
+        assert_near(what, landed_flux(&found) / incident, transmittance, 3e-3);
     }
 }
 
 #[test]
 fn photons_stay_within_the_scene_and_finite_at_any_roughness() {
     let session = Session::open();
-    for roughness in [0.0, 0.05, 0.3, 0.7, 1.0] {
+    // Every material of the same ball receives the same.
+    let most = received(&session, &ball(metal(1.0, 0.0), true));
+    for roughness in [0.0, 0.4, 1.0] {
         let plastic = Material { roughness, ..Material::default() };
         let mixed = Material { transmission: 0.5, metallic: 0.3, roughness, ..Material::default() };
         for material in [metal(0.9, roughness), glass(1.0, roughness), glass(0.0, roughness), plastic, mixed] {
             let scene = ball(material.clone(), true);
             let found = run(&session, &scene, &[("photons.bounces", "4"), ("photons.max", "4000")]);
             assert!(!found.landed.is_empty());
-            let (landed, most) = (landed_flux(&found), received(&session, &scene));
+            let landed = landed_flux(&found);
             assert!((landed - 1.05 * most).max_element() <= 0.0, "{landed} W of {most} W land: {material:?}");
             for photon in &found.landed {
                 assert!(photon.flux.is_finite() && photon.flux.min_element() >= 0.0, "{photon:?}");

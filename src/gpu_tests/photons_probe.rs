@@ -33,8 +33,7 @@ pub(super) struct Ray {
     pub(super) travelled: f64,
     pub(super) direction: DVec3,
     pub(super) flux: DVec3,
-    /// Its number.
-    pub(super) seed: u32,
+    pub(super) number: u32,
 }
 
 /// A photon that landed.
@@ -76,7 +75,7 @@ fn ray(words: &[u32]) -> Ray {
         travelled: f64::from(f32::from_bits(words[3])),
         direction: vector(&words[4..]),
         flux: vector(&words[8..]),
-        seed: words[11],
+        number: words[11],
     }
 }
 

@@ -15,6 +15,7 @@ const PYRAMID_COUNTS: u32 = 32;
 const LEVELS_OF_PASS: usize = 4;
 
 /// Words of the choice (glsl/photons/choice.glsl).
+const CHOICE_LEVEL: usize = 3;
 pub(crate) const CHOICE_PHOTONS: usize = 5;
 pub(crate) const CHOICE_EMIT: usize = 6;
 const CHOICE_LISTED: usize = 9;
@@ -93,7 +94,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
     graph
         .pass("caustics/photons/choose/level", pass)
         .count("specular texels", made.pyramid, 0)
-        .count("level", made.choice, 3)
+        .count("level", made.choice, CHOICE_LEVEL)
         .count("photons", made.choice, CHOICE_PHOTONS)
         .groups([1, 1, 1]);
 

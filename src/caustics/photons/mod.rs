@@ -37,6 +37,9 @@ use splat::{SplatInputs, splat};
 
 /// What every device lets a kernel see of one buffer, bytes.
 const LARGEST_BUFFER: u32 = 1 << 27;
+/// The largest record of a photon at a specular surface (glsl/photons/beam.glsl), and where it lands (glsl/photon_splat/disc.glsl).
+const ARRIVAL_BYTES: u32 = 80;
+const DISC_BYTES: u32 = 48;
 
 /// What the method takes.
 pub(crate) struct PhotonInputs<'a> {
@@ -80,18 +83,20 @@ pub(crate) struct TracedPhotons {
 pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> TracedPhotons {
     let settings = inputs.settings;
     let stages = settings.bounces.max(1) as usize;
-    let capacity = settings.max.min(LARGEST_BUFFER / 48).min(LARGEST_BUFFER / 32 / settings.bounces.max(1)).max(1);
+    let capacity =
+        settings.max.min(LARGEST_BUFFER / ARRIVAL_BYTES).min(LARGEST_BUFFER / DISC_BYTES / settings.bounces.max(1)).max(1);
     let views = views::specular_views(graph, inputs);
     let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
     let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
     let arrivals = Arrivals::declare(graph, capacity);
-    let lists = (settings.trace != PhotonTracing::Bvh).then(|| {
+    let by_triangles = settings.trace == PhotonTracing::Bvh;
+    let lists = (!by_triangles).then(|| {
         lists::build(
             graph,
             &lists::ListInputs { data: inputs.data, geometry: inputs.geometry, camera: Some(inputs.camera), settings },
         )
     });
-    let scene = inputs.traced.map(|traced| (traced, traced.import(graph)));
+    let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.import(graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
     emit::emit(graph, inputs, &views, &choice, arrivals);
     let all_rays = PhotonRays::declare(graph, 0, capacity);
