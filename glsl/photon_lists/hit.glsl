@@ -9,14 +9,15 @@
 #include "photon_lists/view.glsl"
 #include "photons/records.glsl"
 
-// Half the width of a column, texels: twice the texel's own. The surface of a texel ends anywhere between its centre and the next; and on
-// a convex edge the planes of neighbours meet beyond either's column.
-const float COLUMN = 1.0;
+// Half the width of a column, texels: a texel's own and a quarter on either side. Wider ones stretch every surface's edge; narrower ones lose
+// hits on convex edges, where the planes of neighbours meet beyond either's column, and at texels that a line passes over.
+const float COLUMN = 0.75;
 
 // Near its start a ray meets the surface that it leaves, since that is known as planes of texels: for so many texels along the ray, what it
-// crosses from behind (the paper's test n·r > 0) and what its start lies in, to a fraction of a texel, is no hit.
+// crosses from behind and what its start lies in, to a fraction of a texel, is no hit. The paper refuses hits with n·r > 0 all along the ray, but
+// a wall that is a single sheet blocks light from its back too.
 const float START_TEXELS = 2.0;
-const float START_HEIGHT = 0.25;
+const float START_HEIGHT = 0.1;
 
 // A ray in the space of a view: texel coordinates times w, w, and the depth, in metres, at its start and for each metre.
 struct ViewRay {

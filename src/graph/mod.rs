@@ -110,7 +110,14 @@ struct Growing {
 
 impl<'s> Graph<'s> {
     pub(crate) fn new(store: &'s mut Store) -> Graph<'s> {
-        Graph { store, resources: Vec::new(), passes: Vec::new(), wanted: Vec::new(), read_backs: Vec::new(), growing: Vec::new() }
+        Graph {
+            store,
+            resources: Vec::new(),
+            passes: Vec::new(),
+            wanted: Vec::new(),
+            read_backs: Vec::new(),
+            growing: Vec::new(),
+        }
     }
 
     fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {

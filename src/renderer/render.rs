@@ -81,26 +81,34 @@ impl Renderer {
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
         let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
-        let mut graph = Graph::new(&mut self.store);
-        let declared = declare(&mut graph, &prepared, &self.settings, request);
+        let (mut executed, slots, image, display) = loop {
+            let mut graph = Graph::new(&mut self.store);
+            let declared = declare(&mut graph, &prepared, &self.settings, request);
 
-        let mut slots = Vec::new();
-        for &slot in &request.slots {
-            let made = declared.slot(slot);
-            if let (Some(image), false) = (made, request.read_back) {
+            let mut slots = Vec::new();
+            for &slot in &request.slots {
+                let made = declared.slot(slot);
+                if let (Some(image), false) = (made, request.read_back) {
+                    graph.want(image);
+                }
+                slots.push((slot, made.filter(|_| request.read_back).map(|image| graph.read_back(image))));
+            }
+            let image = declared.image.filter(|_| request.image);
+            if let (Some(image), false) = (image, request.read_back) {
                 graph.want(image);
             }
-            slots.push((slot, made.filter(|_| request.read_back).map(|image| graph.read_back(image))));
-        }
-        let image = declared.image.filter(|_| request.image);
-        if let (Some(image), false) = (image, request.read_back) {
-            graph.want(image);
-        }
-        let image = image.filter(|_| request.read_back).map(|image| graph.read_back(image));
-        // Display values are of use to the host alone.
-        let display = declared.display.map(|display| graph.read_back_buffer(display));
+            let image = image.filter(|_| request.read_back).map(|image| graph.read_back(image));
+            // Display values are of use to the host alone.
+            let display = declared.display.map(|display| graph.read_back_buffer(display));
 
-        let mut executed = graph.run(request.timing)?;
+            let executed = graph.run(request.timing)?;
+            if executed.outgrown.is_empty() {
+                break (executed, slots, image, display);
+            }
+            for (name, [held, needed]) in &executed.outgrown {
+                tracing::info!("{name} has room for {held} elements and takes {needed}: the frame is made again");
+            }
+        };
         let size = request.size;
         let mut frame = Frame {
             size,

@@ -25,7 +25,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         for view_index in 0..lists.view_count {
             let pass = Lines {
                 rays: rays.rays.texels(words),
-                views: lists.views(),
+                views: lists.view_texels(),
                 pixels: lists.pixel_texels(),
                 nodes: lists.node_texels(),
                 hits: rays.hits.read_write(),

@@ -127,7 +127,11 @@ fn camera_view(data: &SceneData, camera: &types::Camera, side: f64) -> ListView 
             lateral(down),
             w,
             along,
-            (if perspective { eye } else { eye + corner }).as_vec3().extend(if perspective { near as f32 } else { 0.0 }),
+            (if perspective { eye } else { eye + corner }).as_vec3().extend(if perspective {
+                near as f32
+            } else {
+                0.0
+            }),
             (if perspective { forward + corner } else { forward }).as_vec3().extend(far as f32),
             across.as_vec3().extend(0.0),
             below.as_vec3().extend(across.length().max(below.length()) as f32),
