@@ -56,33 +56,37 @@ vec2 clip_to_view(ListView view, ViewRay ray, float resolution, float end) {
     return range;
 }
 
-struct NodeHit {
-    float distance;
-    uint normal;
-    uint material;
-};
-
 const float NO_HIT_DISTANCE = 3e38;
 
-// Of nodes at the same distance the content decides, never the place in the list.
-void meet_node(uvec4 node, ListView view, Column column, vec2 center, ViewRay along, PhotonRay ray, inout NodeHit nearest) {
+// Along the ray to the surface of a node in the column at `center`, m; NO_HIT_DISTANCE if the ray does not meet it.
+float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, ViewRay along, PhotonRay ray) {
     vec3 normal = unpack_direction(node.y);
     vec3 to_node = column.start + uintBitsToFloat(node.x) * column.way - ray.origin_rs;
     float height = dot(normal, to_node);
     float facing = dot(normal, ray.direction);
-    precise float distance = height / facing;
+    float distance = height / facing;
     vec3 at = along.start + distance * along.step;
     vec2 off = abs(at.xy / at.z - center);
     float texel = view.texel * at.z;
     bool from_behind = facing > 0.0 && (ray.bits & PHOTON_INSIDE) == 0u;
     bool is_start = distance < START_TEXELS * texel && (from_behind || abs(height) < START_HEIGHT * texel);
     bool in_column = max(off.x, off.y) <= COLUMN && at.z > 0.0;
-    if (distance > 0.0 && distance <= nearest.distance && in_column && !is_start) {
-        bool nearer = distance < nearest.distance;
-        nearest.normal = nearer ? node.y : min(nearest.normal, node.y);
-        nearest.material = nearer ? node.w : min(nearest.material, node.w);
-        nearest.distance = distance;
-    }
+    return distance > 0.0 && in_column && !is_start ? distance : NO_HIT_DISTANCE;
+}
+
+struct NodeHit {
+    float distance;
+    uint normal;
+    uint material;
+};
+
+// Takes the nearer of two. Of nodes at the same distance the content decides, never the place in the list.
+void take_nearer(inout NodeHit nearest, float distance, uvec4 node) {
+    bool nearer = distance < nearest.distance;
+    bool same = distance == nearest.distance;
+    nearest.normal = nearer ? node.y : same ? min(nearest.normal, node.y) : nearest.normal;
+    nearest.material = nearer ? node.w : same ? min(nearest.material, node.w) : nearest.material;
+    nearest.distance = min(nearest.distance, distance);
 }
 
 #endif
