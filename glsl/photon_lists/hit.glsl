@@ -9,14 +9,15 @@
 #include "photon_lists/view.glsl"
 #include "photons/records.glsl"
 
-// Half the width of a column, texels: twice the texel's own. The surface of a texel ends anywhere between its centre and the next; and on
-// a convex edge the planes of neighbours meet beyond either's column.
-const float COLUMN = 1.0;
+// Half the width of a column, texels: a texel's own and a quarter on either side. Wider ones stretch every surface's edge; narrower ones lose
+// hits on convex edges, where the planes of neighbours meet beyond either's column, and at texels that a line passes over.
+const float COLUMN = 0.75;
 
 // Near its start a ray meets the surface that it leaves, since that is known as planes of texels: for so many texels along the ray, what it
-// crosses from behind (the paper's test n·r > 0) and what its start lies in, to a fraction of a texel, is no hit.
+// crosses from behind and what its start lies in, to a fraction of a texel, is no hit. The paper refuses hits with n·r > 0 all along the ray, but
+// a wall that is a single sheet blocks light from its back too.
 const float START_TEXELS = 2.0;
-const float START_HEIGHT = 0.25;
+const float START_HEIGHT = 0.1;
 
 // A ray in the space of a view: texel coordinates times w, w, and the depth, in metres, at its start and for each metre.
 struct ViewRay {
@@ -55,33 +56,37 @@ vec2 clip_to_view(ListView view, ViewRay ray, float resolution, float end) {
     return range;
 }
 
-struct NodeHit {
-    float distance;
-    uint normal;
-    uint material;
-};
-
 const float NO_HIT_DISTANCE = 3e38;
 
-// Of nodes at the same distance the content decides, never the place in the list.
-void meet_node(uvec4 node, ListView view, Column column, vec2 center, ViewRay along, PhotonRay ray, inout NodeHit nearest) {
+// Along the ray to the surface of a node in the column at `center`, m; NO_HIT_DISTANCE if the ray does not meet it.
+float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, ViewRay along, PhotonRay ray) {
     vec3 normal = unpack_direction(node.y);
     vec3 to_node = column.start + uintBitsToFloat(node.x) * column.way - ray.origin_rs;
     float height = dot(normal, to_node);
     float facing = dot(normal, ray.direction);
-    precise float distance = height / facing;
+    float distance = height / facing;
     vec3 at = along.start + distance * along.step;
     vec2 off = abs(at.xy / at.z - center);
     float texel = view.texel * at.z;
     bool from_behind = facing > 0.0 && (ray.bits & PHOTON_INSIDE) == 0u;
     bool is_start = distance < START_TEXELS * texel && (from_behind || abs(height) < START_HEIGHT * texel);
     bool in_column = max(off.x, off.y) <= COLUMN && at.z > 0.0;
-    if (distance > 0.0 && distance <= nearest.distance && in_column && !is_start) {
-        bool nearer = distance < nearest.distance;
-        nearest.normal = nearer ? node.y : min(nearest.normal, node.y);
-        nearest.material = nearer ? node.w : min(nearest.material, node.w);
-        nearest.distance = distance;
-    }
+    return distance > 0.0 && in_column && !is_start ? distance : NO_HIT_DISTANCE;
+}
+
+struct NodeHit {
+    float distance;
+    uint normal;
+    uint material;
+};
+
+// Takes the nearer of two. Of nodes at the same distance the content decides, never the place in the list.
+void take_nearer(inout NodeHit nearest, float distance, uvec4 node) {
+    bool nearer = distance < nearest.distance;
+    bool same = distance == nearest.distance;
+    nearest.normal = nearer ? node.y : same ? min(nearest.normal, node.y) : nearest.normal;
+    nearest.material = nearer ? node.w : same ? min(nearest.material, node.w) : nearest.material;
+    nearest.distance = min(nearest.distance, distance);
 }
 
 #endif

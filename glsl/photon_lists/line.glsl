@@ -10,7 +10,6 @@ layout(set = 0, binding = 1) uniform samplerBuffer views;
 layout(push_constant, scalar) uniform Push {
     uint view_index;
     uint resolution;
-    uint resolves;  // 0: finds the distance, 1: finds what is there
 } push;
 
 #endif

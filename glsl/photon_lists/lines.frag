@@ -3,8 +3,8 @@
 #include "photon_lists/line.glsl"
 
 // One texel of a photon's line: what the ray meets of the texel's list (Quyen 2014, alg. 3.5; the test itself is photon_lists/hit.glsl's). The
-// paper writes each line into a row of a texture and takes the row's first hit; here the nearest is an atomic minimum of the distance, in m,
-// and what lies there is found by drawing the lines once more. Depths come from the ray, not from interpolation along the line.
+// paper writes each line into a row of a texture and takes the row's first hit; here the nearest is an atomic minimum of the distance, in m.
+// Depths come from the ray, not from interpolation along the line.
 
 layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
 layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
@@ -32,19 +32,15 @@ void main() {
         // `known` is a NaN as long as nothing was hit: no comparison holds then.
         if (!beyond && !(t - reach > known)) {
             Column column = column_of(view, center);
-            NodeHit nearest = NodeHit(NO_HIT_DISTANCE, HIT_NONE, HIT_NONE);
+            float nearest = NO_HIT_DISTANCE;
             uint index = list.x;
             while (index != NO_NODE) {
                 uvec4 node = texelFetch(nodes, int(index));
-                meet_node(node, view, column, center, along, ray, nearest);
+                nearest = min(nearest, distance_to_node(node, view, column, center, along, ray));
                 index = node.z;
             }
-            uint bits = nearest.distance == NO_HIT_DISTANCE ? HIT_NONE : floatBitsToUint(nearest.distance);
-            if (push.resolves == 0u) {
-                atomicMin(hits[4u * ray_index], bits);
-            } else if (bits == hits[4u * ray_index]) {
-                atomicMin(hits[4u * ray_index + 1u], nearest.normal);
-                atomicMin(hits[4u * ray_index + 2u], nearest.material);
+            if (nearest < NO_HIT_DISTANCE) {
+                atomicMin(hits[4u * ray_index], floatBitsToUint(nearest));
             }
         }
     }

@@ -38,7 +38,7 @@ void meet_list(uint first, ListView view, vec2 center, ViewRay along, PhotonRay 
     uint index = first;
     while (index != NO_NODE) {
         uvec4 node = texelFetch(nodes, int(index));
-        meet_node(node, view, column, center, along, ray, nearest);
+        take_nearer(nearest, distance_to_node(node, view, column, center, along, ray), node);
         index = node.z;
     }
 }

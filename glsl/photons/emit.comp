@@ -169,7 +169,7 @@ void main() {
     // Views round the corners of what they draw to 1/256 of a texel.
     float gap = gap_at(position, push.radius) + texel_width / 64.0;
     // One photon to the next.
-    float spacing = exp2(float(level) - float(split));
+    float spacing = exp2(float(level)) * inversesqrt(float(of_block));
     vec3 face = unpack_direction(surface.y);
     vec3 own = unpack_direction(surface.x);
     vec3 origin_change[2];

@@ -3,10 +3,12 @@
 use ash::vk;
 
 use super::lists::SceneLists;
-use super::records::PhotonRays;
+use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
-use crate::shaders::photon_lists::{LineArguments, LineArgumentsPush, Lines, LinesPush};
+use crate::shaders::photon_lists::{
+    LineArguments, LineArgumentsPush, Lines, LinesPush, LinesResolve, LinesResolvePush,
+};
 use crate::vulkan::RasterState;
 
 /// Words of the arguments of a draw.
@@ -21,21 +23,36 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     let pass = LineArguments { counts: counts.read(), arguments: arguments.write(), push };
     graph.pass(&format!("caustics/photons/lines-arguments.{stage}"), pass).groups([1, 1, 1]);
     graph.fill_buffer(&format!("caustics/photons/lines-clear.{stage}"), rays.hits, u32::MAX);
-    for (resolves, name) in [(0, "lines"), (1, "lines-resolve")] {
-        for view_index in 0..lists.view_count {
-            let pass = Lines {
-                rays: rays.rays.texels(words),
-                views: lists.views(),
-                pixels: lists.pixel_texels(),
-                nodes: lists.node_texels(),
-                hits: rays.hits.read_write(),
-                push: LinesPush { view_index, resolution: lists.resolution, resolves },
-            };
-            let state = RasterState { topology: vk::PrimitiveTopology::LINE_LIST, ..RasterState::default() };
-            graph
-                .raster(&format!("caustics/photons/{name}.{stage}.{view_index}"), pass, state)
-                .area([lists.resolution; 2])
-                .draw_indirect(arguments, 0, 1);
-        }
+    for view_index in 0..lists.view_count {
+        let pass = Lines {
+            rays: rays.rays.texels(words),
+            views: lists.view_texels(),
+            pixels: lists.pixel_texels(),
+            nodes: lists.node_texels(),
+            hits: rays.hits.read_write(),
+            push: LinesPush { view_index, resolution: lists.resolution },
+        };
+        let state = RasterState { topology: vk::PrimitiveTopology::LINE_LIST, ..RasterState::default() };
+        graph
+            .raster(&format!("caustics/photons/lines.{stage}.{view_index}"), pass, state)
+            .area([lists.resolution; 2])
+            .draw_indirect(arguments, 0, 1);
     }
+    let resolve = LinesResolve {
+        rays: rays.rays.texels(words),
+        views: lists.view_texels(),
+        pixels: lists.pixel_texels(),
+        nodes: lists.node_texels(),
+        hits: rays.hits.read_write(),
+        counts: counts.read(),
+        push: LinesResolvePush {
+            resolution: lists.resolution,
+            view_count: lists.view_count,
+            stage: stage as u32,
+            capacity: rays.capacity,
+        },
+    };
+    graph
+        .pass(&format!("caustics/photons/lines-resolve.{stage}"), resolve)
+        .threads_indirect(counts, STAGE_WORDS * stage + DISPATCH_WORD);
 }

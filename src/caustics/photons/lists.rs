@@ -19,8 +19,8 @@ use crate::shaders::photon_lists::{
 use crate::shaders::types;
 use crate::vulkan::RasterState;
 
-/// The pool's first size, for each texel of each view.
-const NODES_PER_TEXEL: usize = 4;
+/// The pool's first size, nodes for each texel of each view.
+const NODES_PER_TEXEL: u32 = 4;
 /// A block of level l covers 4^l × 4^l texels (glsl/photon_lists/slices.glsl).
 const LEVEL_BITS: u32 = 2;
 /// The coarsest level has so many blocks to a side at least.
@@ -41,7 +41,7 @@ pub(crate) struct ListInputs<'a> {
 pub(crate) struct SceneLists {
     pub(crate) resolution: u32,
     pub(crate) view_count: u32,
-    views: BufferRef<[f32; 4]>,
+    pub(crate) views: BufferRef<[f32; 4]>,
     /// Four words for each texel of each view (glsl/photon_lists/node.glsl).
     pub(crate) pixels: BufferRef<u32>,
     pub(crate) nodes: BufferRef<[u32; 4]>,
@@ -60,26 +60,35 @@ pub(crate) struct Blocks {
 }
 
 impl SceneLists {
-    pub(crate) fn views(&self) -> TexelBuffer {
+    pub(super) fn view_texels(&self) -> TexelBuffer {
         self.views.texels(vk::Format::R32G32B32A32_SFLOAT)
     }
 
-    pub(crate) fn pixel_texels(&self) -> TexelBuffer {
+    pub(super) fn pixel_texels(&self) -> TexelBuffer {
         self.pixels.texels(vk::Format::R32G32B32A32_UINT)
     }
 
-    pub(crate) fn node_texels(&self) -> TexelBuffer {
+    pub(super) fn node_texels(&self) -> TexelBuffer {
         self.nodes.texels(vk::Format::R32G32B32A32_UINT)
     }
 }
 
 /// Declares the passes that make the lists.
 pub(crate) fn build(graph: &mut Graph<'_>, inputs: &ListInputs<'_>) -> SceneLists {
-    build_from(graph, inputs, NODES_PER_TEXEL)
+    let settings = inputs.settings;
+    let views = match settings.projection {
+        ListProjection::Camera => 1,
+        ListProjection::Scene => settings.views,
+    };
+    let per_texel = match settings.geometry {
+        PhotonGeometry::Lists => NODES_PER_TEXEL,
+        PhotonGeometry::Layers(count) => count,
+    };
+    build_from(graph, inputs, (per_texel * views * settings.resolution * settings.resolution) as usize)
 }
 
-/// As [`build`], with a pool of so many nodes for each texel at first.
-pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, nodes_per_texel: usize) -> SceneLists {
+/// As [`build`], with a pool of so many nodes at first.
+pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: usize) -> SceneLists {
     let resolution = inputs.settings.resolution;
     let views = list_views(inputs.data, inputs.camera, inputs.settings);
     let texels: Vec<[f32; 4]> = views.iter().flat_map(|view| view.texels.map(|texel| texel.to_array())).collect();
@@ -90,16 +99,12 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, nodes_p
     let view_count = views.len() as u32;
     let pixel_count = (resolution * resolution) as usize * views.len();
     let (top, first_of_level, block_count) = levels(resolution, view_count);
-    let per_texel = match inputs.settings.geometry {
-        PhotonGeometry::Lists => nodes_per_texel,
-        PhotonGeometry::Layers(count) => count as usize,
-    };
     let lists = SceneLists {
         resolution,
         view_count,
         views: graph.upload("photons.lists.views", &texels, depends),
         pixels: graph.buffer("photons.lists.pixels", 4 * pixel_count),
-        nodes: graph.growing_buffer("photons.lists.nodes", (per_texel * pixel_count).max(1)),
+        nodes: graph.growing_buffer("photons.lists.nodes", pool),
         node_count: graph.buffer("photons.lists.node_count", 1),
         blocks: Blocks { slices: graph.buffer("photons.lists.blocks", block_count), top, first_of_level },
     };
@@ -146,7 +151,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         instances: geometry.instances.clone(),
         indices: geometry.indices.clone(),
         positions: geometry.positions.clone(),
-        views: lists.views(),
+        views: lists.view_texels(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.write(),
@@ -170,7 +175,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         indices: geometry.indices.clone(),
         positions: geometry.positions.clone(),
         material_textures: geometry.material_textures.clone(),
-        views: lists.views(),
+        views: lists.view_texels(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.read_write(),
@@ -194,7 +199,7 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
         [view_count * side * side, 1, 1]
     };
     let finest = Occupancy {
-        views: lists.views(),
+        views: lists.view_texels(),
         pixels: lists.pixel_texels(),
         nodes: lists.node_texels(),
         blocks: blocks.slices.write(),

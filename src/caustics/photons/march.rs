@@ -20,7 +20,7 @@ pub(crate) fn trace(
     graph.fill_buffer(&format!("caustics/photons/march-clear.{}", rays.stage), work, 0);
     let pass = March {
         rays: rays.rays.texels(words),
-        views: lists.views(),
+        views: lists.view_texels(),
         pixels: lists.pixel_texels(),
         nodes: lists.node_texels(),
         blocks: lists.blocks.slices.texels(words),

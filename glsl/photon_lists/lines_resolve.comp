@@ -1,0 +1,59 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "photon_lists/hit.glsl"
+
+// What lies at the distance that a photon's lines found: of the nodes in whose columns the hit is, the one that the ray meets nearest to it.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer rays;
+layout(set = 0, binding = 1) uniform samplerBuffer views;
+layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
+layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
+layout(set = 0, binding = 4) buffer Hits { uint hits[]; };
+layout(set = 0, binding = 5) readonly buffer Counts { uint counts[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint resolution;
+    uint view_count;
+    uint stage;
+    uint capacity;
+} push;
+
+void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) {
+    ListView view = load_list_view(views, view_index);
+    ViewRay along = view_ray(view, ray);
+    vec3 at = along.start + found * along.step;
+    ivec2 first = ivec2(floor(clamp(at.xy / at.z, -2.0, float(push.resolution) + 2.0) - 0.5));
+    // Columns reach less than a texel beyond their centres.
+    for (uint place = 0u; place < 4u; ++place) {
+        ivec2 cell = first + ivec2(place & 1u, place >> 1);
+        uint index = NO_NODE;
+        if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(push.resolution)))) {
+            uint row = view_index * push.resolution + uint(cell.y);
+            index = texelFetch(pixels, int(row * push.resolution + uint(cell.x))).x;
+        }
+        vec2 center = vec2(cell) + 0.5;
+        Column column = column_of(view, center);
+        while (index != NO_NODE) {
+            uvec4 node = texelFetch(nodes, int(index));
+            take_nearer(closest, abs(distance_to_node(node, view, column, center, along, ray) - found), node);
+            index = node.z;
+        }
+    }
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    uint count = min(counts[STAGE_WORDS * push.stage + COUNT_WORD], push.capacity);
+    if (index < count && hits[4u * index] != HIT_NONE) {
+        PhotonRay ray = load_photon_ray(rays, index);
+        float found = uintBitsToFloat(hits[4u * index]);
+        NodeHit closest = NodeHit(NO_HIT_DISTANCE, 0u, 0u);
+        for (uint view = 0u; view < push.view_count; ++view) {
+            search(view, ray, found, closest);
+        }
+        hits[4u * index + 1u] = closest.normal;
+        hits[4u * index + 2u] = closest.material;
+    }
+}
