@@ -100,11 +100,8 @@ pub(super) fn gather_stencil(
         },
     };
     let tests = StencilState { compare: vk::CompareOp::EQUAL, pass: vk::StencilOp::KEEP, reference: VALID };
-    let state = RasterState {
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        stencil: Some(tests),
-        ..RasterState::default()
-    };
+    let state =
+        RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, stencil: Some(tests), ..RasterState::default() };
     graph
         .raster("diffuse/vpl/gather-stencil", pass, state)
         .count("regions", invocations, 0)
