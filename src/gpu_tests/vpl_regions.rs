@@ -15,7 +15,7 @@ use crate::frame::twins;
 use crate::graph::ClearColor;
 use crate::renderer::{ColorImage, Settings, Slot};
 
-const SIZE: [u32; 2] = [200, 130];
+const SIZE: [u32; 2] = [270, 258];
 const SCENES: [&str; 3] = ["cornell-point", "ring", "lights"];
 
 fn with(shading: &str) -> Settings {
@@ -122,7 +122,7 @@ fn relative_error(a: &ColorImage, b: &ColorImage) -> f64 {
 #[test]
 fn regions_come_close_to_pixels() {
     let session = Session::open();
-    for (name, bound) in [("cornell-empty", 0.03), ("cornell-point", 0.04), ("ring", 0.03)] {
+    for (name, bound) in [("cornell-empty", 0.02), ("cornell-point", 0.03), ("ring", 0.03)] {
         let pixels = diffuse(&session, name, [256, 256], &with("pixels"));
         let regions = diffuse(&session, name, [256, 256], &with("auto"));
         let error = relative_error(&regions, &pixels);
@@ -168,11 +168,11 @@ fn constant_irradiance_stays_constant() {
 #[test]
 fn any_size_and_any_number_of_vpls_give_finite_light() {
     let session = Session::open();
-    for size in [[1, 1], [17, 5], [33, 35], [95, 64]] {
+    for size in [[1, 1], [17, 5], [67, 65]] {
         for shading in ["pixels", "compute", "stencil"] {
             for count in ["0", "1", "33"] {
                 let settings =
-                    vpl_settings(&[("vpl.shading", shading), ("vpl.count", count), ("lights.resolution", "64")]);
+                    vpl_settings(&[("vpl.shading", shading), ("vpl.count", count), ("lights.resolution", "32")]);
                 let image = diffuse(&session, "cornell-point", size, &settings);
                 let sound = image.pixels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0);
                 assert!(sound, "{size:?}, {shading}, {count} VPLs");

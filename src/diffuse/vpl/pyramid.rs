@@ -19,8 +19,9 @@ pub(crate) struct Pyramid {
     pub(crate) list: Option<BufferRef<u32>>,
 }
 
-/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear.
-const LEAST_REGIONS: u32 = 16;
+/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear. Sixteen adds 0.005 to the
+/// rrmse of a Cornell box, thirty-two 0.001 at 13 % more regions.
+const LEAST_REGIONS: u32 = 32;
 /// Words of the list before its first region: three of an indirect dispatch, the length.
 const LIST_HEADER: usize = 4;
 
