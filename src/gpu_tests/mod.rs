@@ -42,3 +42,5 @@ mod skipping;
 mod sppm;
 mod tonemap;
 mod traced_direct;
+mod vpl_regions;
+mod vpl_samples;

@@ -13,7 +13,7 @@ use crate::vulkan::{RasterState, StencilState};
 pub(super) const VALID: u32 = 1;
 
 /// Size of the image that all levels lie in (glsl/vpl/regions.glsl).
-pub(super) fn flattened_size(size: [u32; 2]) -> [u32; 2] {
+pub(crate) fn flattened_size(size: [u32; 2]) -> [u32; 2] {
     [size[0].next_multiple_of(4) + size[0] / 2, size[1]]
 }
 
@@ -23,6 +23,7 @@ pub(super) fn mark(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, pyramid: &Pyra
     let stencil = graph.image("vpl.stencil", vk::Format::S8_UINT, flattened_size(size));
     let pass = MarkRegions {
         depth: inputs.buffer.depth.sampled(),
+        surface: inputs.buffer.surface.sampled(),
         planes: pyramid.planes.sampled(),
         push: MarkRegionsPush { size: signed(size), level_count: pyramid.level_count.cast_signed() },
     };
