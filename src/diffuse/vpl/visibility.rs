@@ -12,6 +12,11 @@ use crate::shaders::types::VplRays;
 /// How far from a VPL's surface rays end or start, as a share of the scene's radius.
 const OFFSET: f64 = 3e-5;
 
+/// The kinds of glsl/vpl/visibility.glsl.
+const NONE: u32 = 0;
+const ISM: u32 = 1;
+pub(super) const TRACED: u32 = 2;
+
 /// What the kernels that gather bind for visibility (glsl/vpl/visibility.glsl).
 #[derive(Clone)]
 pub(super) struct Visibility {
@@ -98,12 +103,12 @@ impl Visibility {
     ) -> Visibility {
         let none = vpls.texels(vk::Format::R32G32B32A32_SFLOAT);
         let (kind, ism_resolution, ism_maps) = match inputs.settings.visibility {
-            VplVisibility::None => (0, 1, none),
+            VplVisibility::None => (NONE, 1, none),
             VplVisibility::Ism => {
                 let maps = imperfect_shadow_maps(graph, inputs.data, inputs.geometry, vpls, inputs.settings);
-                (1, maps.resolution, maps.texels())
+                (ISM, maps.resolution, maps.texels())
             }
-            VplVisibility::Traced => (2, 1, none),
+            VplVisibility::Traced => (TRACED, 1, none),
         };
         Visibility { kind, ism_resolution, ism_maps, rays }
     }
