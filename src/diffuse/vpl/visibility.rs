@@ -1,6 +1,7 @@
 //! Whether light from a VPL may be blocked: not at all, by imperfect shadow maps, or by rays.
 
 use ash::vk;
+use glam::DVec3;
 
 use super::VplInputs;
 use super::ism::imperfect_shadow_maps;
@@ -47,11 +48,10 @@ pub(super) struct Rays {
 impl Rays {
     /// Of a frame that traces none, buffers that stand for what is not there.
     pub(super) fn new(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, vpls: BufferRef<[f32; 4]>) -> Rays {
-        let VplRays { shift, offset } = inputs.traced.map_or(VplRays { shift: [0.0; 3], offset: 0.0 }, |traced| {
-            let shift = (inputs.data.origin - traced.origin).as_vec3().to_array();
-            VplRays { shift, offset: (traced.radius * OFFSET) as f32 }
-        });
-        let rays = graph.upload("vpl.rays", &[VplRays { shift, offset }], Dependence::GEOMETRY).uniform();
+        let (radius, origin) = (inputs.data.radius, inputs.data.origin);
+        let shift = inputs.traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
+        let rays = VplRays { shift, offset: (radius * OFFSET) as f32, radius: radius as f32 };
+        let rays = graph.upload("vpl.rays", &[rays], Dependence::GEOMETRY).uniform();
         match inputs.traced {
             Some(traced) => {
                 let scene = traced.import(graph);
