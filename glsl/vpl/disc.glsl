@@ -49,9 +49,10 @@ float disc_form_factor(Vpl vpl, vec3 position_rs, vec3 normal) {
         float radius = sqrt(radius2);
         float turned = sqrt(max(1.0 - axial * axial, 1e-12));
         float half_disc = INVERSE_PI * (atan(radius / height) - radius * height / (radius2 + height * height)) / radius2;
-        float halves = 2.0 * half_disc * turned * min(4.0 * (1.0 - from_axis2 / radius2), 1.0);
+        float along_radius2 = from_axis2 / radius2;
+        float halves = 2.0 * half_disc * turned * (1.0 - along_radius2 * along_radius2 * along_radius2);
         float both = sqrt(across * across + halves * halves);
-        float fold = clamp(2.0 * in_front / (turned * radius), 0.0, 1.0);
+        float fold = clamp(4.0 * in_front / (turned * radius), 0.0, 1.0);
         across = 0.5 * (across + both) + 0.5 * fold * (both - across);
         along = max(along, 0.0);
     }

@@ -36,3 +36,5 @@ mod skipping;
 mod sppm;
 mod tonemap;
 mod traced_direct;
+mod vpl_regions;
+mod vpl_samples;

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::renderer::{FrameRequest, Preset, Settings, Slot, Technique};
+use crate::renderer::{DiffuseMethod, FrameRequest, Preset, Settings, Slot, Technique};
 use crate::scene::{
     CameraView, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node, NodeId, Primitive, Projection, Scene,
 };
@@ -90,6 +90,13 @@ pub(super) fn settings(changes: &[(&str, &str)]) -> Settings {
     for (key, value) in changes {
         settings.set(key, value).expect("a setting and its value");
     }
+    settings
+}
+
+/// The same with virtual point lights gathered at regions.
+pub(super) fn vpl_settings(changes: &[(&str, &str)]) -> Settings {
+    let mut settings = settings(changes);
+    settings.methods.diffuse = DiffuseMethod::Vpl;
     settings
 }
 

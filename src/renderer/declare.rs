@@ -38,9 +38,7 @@ impl Declared {
         match slot {
             Slot::Emission => self.gbuffer.emission,
             Slot::Direct => self.direct,
-            Slot::Diffuse => {
-                self.vpl.as_ref().map(|vpl| vpl.diffuse).or(self.rsm.as_ref().map(|rsm| rsm.diffuse))
-            }
+            Slot::Diffuse => self.vpl.as_ref().map(|vpl| vpl.diffuse).or(self.rsm.as_ref().map(|rsm| rsm.diffuse)),
             Slot::Caustics => self.caustics,
             Slot::Specular => None,
         }

@@ -1,23 +1,23 @@
 //! From irradiance at regions to radiance at pixels, coarse to fine.
 
-use super::VplInputs;
 use super::pyramid::{Pyramid, signed};
+use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
+use crate::renderer::VplSettings;
 use crate::shaders::vpl::{Interpolate, InterpolatePush, Resolve, ResolvePush};
 
 /// Declares the passes, one a level; `irradiance` is the flattened image.
-pub(super) fn interpolate(
+pub(crate) fn interpolate(
     graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    buffer: &GBuffer,
+    settings: &VplSettings,
     pyramid: &Pyramid,
     irradiance: ImageRef,
     diffuse: ImageRef,
 ) {
-    let buffer = inputs.buffer;
     let size = buffer.size;
-    let (depth_threshold, normal_threshold) =
-        (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
+    let (depth_threshold, normal_threshold) = (settings.depth_threshold as f32, settings.normal_threshold as f32);
     let planes_of_level = |level: u32| pyramid.planes.mip(level - 1).sampled();
     for level in (1..pyramid.level_count - 1).rev() {
         let pass = Interpolate {
@@ -25,12 +25,7 @@ pub(super) fn interpolate(
             region_planes: planes_of_level(level + 1),
             irradiance: irradiance.read_write(),
             camera: buffer.camera.clone(),
-            push: InterpolatePush {
-                size: signed(size),
-                level: level.cast_signed(),
-                depth_threshold,
-                normal_threshold,
-            },
+            push: InterpolatePush { size: signed(size), level: level.cast_signed(), depth_threshold, normal_threshold },
         };
         let regions = size.map(|side| side >> (level + 1));
         graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);

@@ -118,8 +118,12 @@ pub(crate) fn imperfect_shadow_maps(
     for level in (1..sides.len() - 1).rev() {
         let pushed = graph.buffer::<[f32; 2]>(&format!("ism.pushed.{level}"), count(sides[level]));
         let push = PushPush { vpl_count, side: sides[level], coarse_side: sides[level + 1] };
-        let pass =
-            Push { pulled: levels[level - 1].texels(FLOATS2), coarse: coarse.texels(FLOATS2), pushed: pushed.write(), push };
+        let pass = Push {
+            pulled: levels[level - 1].texels(FLOATS2),
+            coarse: coarse.texels(FLOATS2),
+            pushed: pushed.write(),
+            push,
+        };
         graph.pass(&format!("diffuse/vpl/ism-push-{level}"), pass).groups(groups(sides[level]));
         coarse = pushed;
     }
@@ -137,12 +141,7 @@ pub(crate) fn imperfect_shadow_maps(
 }
 
 /// Declares the passes that place the points; they run when geometry changes.
-fn surface_points(
-    graph: &mut Graph<'_>,
-    data: &SceneData,
-    geometry: &Geometry,
-    points_of_set: u32,
-) -> SurfacePoints {
+fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, points_of_set: u32) -> SurfacePoints {
     let mut first_triangles = vec![0_u32];
     for instance in &data.drawn {
         let before = first_triangles[first_triangles.len() - 1];

@@ -1,11 +1,11 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
-mod interpolate;
+pub(crate) mod interpolate;
 mod ism;
 mod paths;
-mod pyramid;
-mod regions;
+pub(crate) mod pyramid;
+pub(crate) mod regions;
 mod sample;
 mod visibility;
 
@@ -68,7 +68,7 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         return made;
     }
     let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
-    let pyramid = pyramid::pyramid(graph, inputs, level_count, listed);
+    let pyramid = pyramid::pyramid(graph, inputs.buffer, inputs.settings, level_count, listed);
     made.list = pyramid.list;
     let irradiance = if let Some(list) = pyramid.list {
         gather::gather_list(graph, inputs, vpls, &visibility, &pyramid, list)
@@ -78,7 +78,7 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         made.invocations = Some(invocations);
         irradiance
     };
-    interpolate::interpolate(graph, inputs, &pyramid, irradiance, diffuse);
+    interpolate::interpolate(graph, inputs.buffer, inputs.settings, &pyramid, irradiance, diffuse);
     made
 }
 

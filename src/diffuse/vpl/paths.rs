@@ -20,7 +20,9 @@ const SHARE: [u32; 2] = [2, 3];
 
 /// VPLs of each bounce.
 fn counts(first: u32, bounces: u32) -> Vec<u32> {
-    (0..bounces).scan(first, |count, _| Some(std::mem::replace(count, (*count * SHARE[0]).div_ceil(SHARE[1])))).collect()
+    (0..bounces)
+        .scan(first, |count, _| Some(std::mem::replace(count, (*count * SHARE[0]).div_ceil(SHARE[1]))))
+        .collect()
 }
 
 /// Declares the passes that add the bounces beyond the first to `first_bounce`; returns the VPLs of all.
@@ -35,8 +37,7 @@ pub(super) fn with_bounces(
     let all: u32 = counts.iter().sum();
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
     let texel_count = 2 * counts[0];
-    let pass =
-        Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.write(), push: CopyPush { texel_count } };
+    let pass = Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.write(), push: CopyPush { texel_count } };
     graph.pass("diffuse/vpl/copy", pass).threads([texel_count, 1, 1]);
 
     let mut parents = 0;

@@ -2,44 +2,46 @@
 
 use ash::vk;
 
-use super::VplInputs;
+use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::renderer::VplSettings;
 use crate::shaders::vpl::{FirstRegions, FirstRegionsPush, LargerRegions, LargerRegionsPush};
 use crate::vulkan::ImageInfo;
 
 /// The pyramid: mip l − 1 is level l of the regions (glsl/vpl/regions.glsl).
-pub(super) struct Pyramid {
-    pub(super) planes: ImageRef,
-    pub(super) normals: ImageRef,
+pub(crate) struct Pyramid {
+    pub(crate) planes: ImageRef,
+    pub(crate) normals: ImageRef,
     /// Sizes of regions, pixels included; at least 2.
-    pub(super) level_count: u32,
+    pub(crate) level_count: u32,
     /// The valid regions (glsl/vpl/list.glsl), if they are asked for.
-    pub(super) list: Option<BufferRef<u32>>,
+    pub(crate) list: Option<BufferRef<u32>>,
 }
 
-/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear.
-const LEAST_REGIONS: u32 = 16;
+/// The largest region is at most one part of so many of the image's shorter side: over more of it, light is not linear. Sixteen adds 0.005 to the
+/// rrmse of a Cornell box, thirty-two 0.001 at 13 % more regions.
+const LEAST_REGIONS: u32 = 32;
 /// Words of the list before its first region: three of an indirect dispatch, the length.
 const LIST_HEADER: usize = 4;
 
 /// As many levels as the settings ask for and the image is large enough for.
-pub(super) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
+pub(crate) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
     let largest = size[0].min(size[1]) / LEAST_REGIONS;
     wanted.min(largest.max(1).ilog2() + 1)
 }
 
 /// Declares the passes, one a level; `level_count` is at least 2. `group_regions`: asks for the list of valid regions, for groups that gather for so
 /// many of them each.
-pub(super) fn pyramid(
+pub(crate) fn pyramid(
     graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    buffer: &GBuffer,
+    settings: &VplSettings,
     level_count: u32,
     group_regions: Option<u32>,
 ) -> Pyramid {
-    let buffer = inputs.buffer;
     let size = buffer.size;
-    let thresholds = (inputs.settings.depth_threshold as f32, inputs.settings.normal_threshold as f32);
+    let thresholds = (settings.depth_threshold as f32, settings.normal_threshold as f32);
     let (depth_threshold, normal_threshold) = thresholds;
     let info = |format| ImageInfo {
         format,
@@ -97,6 +99,6 @@ pub(super) fn pyramid(
     Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
 }
 
-pub(super) fn signed(size: [u32; 2]) -> [i32; 2] {
+pub(crate) fn signed(size: [u32; 2]) -> [i32; 2] {
     size.map(u32::cast_signed)
 }

@@ -13,7 +13,7 @@ use crate::vulkan::{RasterState, StencilState};
 pub(super) const VALID: u32 = 1;
 
 /// Size of the image that all levels lie in (glsl/vpl/regions.glsl).
-pub(super) fn flattened_size(size: [u32; 2]) -> [u32; 2] {
+pub(crate) fn flattened_size(size: [u32; 2]) -> [u32; 2] {
     [size[0].next_multiple_of(4) + size[0] / 2, size[1]]
 }
 
@@ -27,11 +27,8 @@ pub(super) fn mark(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, pyramid: &Pyra
         push: MarkRegionsPush { size: signed(size), level_count: pyramid.level_count.cast_signed() },
     };
     let marks = StencilState { compare: vk::CompareOp::ALWAYS, pass: vk::StencilOp::REPLACE, reference: VALID };
-    let state = RasterState {
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        stencil: Some(marks),
-        ..RasterState::default()
-    };
+    let state =
+        RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, stencil: Some(marks), ..RasterState::default() };
     graph.raster("diffuse/vpl/mark", pass, state).stencil(stencil, Some(0)).vertices(3, 1);
     stencil
 }
