@@ -1,4 +1,4 @@
-// Irradiance from all virtual point lights at two receivers, which share the loads of a light,
+// Irradiance from virtual point lights, all or a range of them, at two receivers, which share the loads of a light,
 //
 //   E(x) = Σ_k Φ_k/π · F_k(x) · V_k(x)      [W/m²]
 //
@@ -18,6 +18,12 @@ struct Receiver {
     vec3 normal;   // 0: there is no receiver
 };
 
+// Which VPLs one pass takes; beyond the first pass, sums are added to.
+struct VplRange {
+    int first;
+    int end;
+};
+
 float received_factor(int k, Vpl vpl, Receiver receiver) {
     float factor = disc_form_factor(vpl, receiver.position_rs, receiver.normal);
 #ifdef VPL_VISIBILITY
@@ -28,19 +34,19 @@ float received_factor(int k, Vpl vpl, Receiver receiver) {
     return factor;
 }
 
-void gather(int vpl_count, Receiver a, Receiver b, out vec3 irradiance_a, out vec3 irradiance_b) {
+void gather(VplRange range, Receiver a, Receiver b, out vec3 irradiance_a, out vec3 irradiance_b) {
     irradiance_a = vec3(0.0);
     irradiance_b = vec3(0.0);
-    for (int k = 0; k < vpl_count; ++k) {
+    for (int k = range.first; k < range.end; ++k) {
         Vpl vpl = as_disc(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
         irradiance_a += vpl.strength * received_factor(k, vpl, a);
         irradiance_b += vpl.strength * received_factor(k, vpl, b);
     }
 }
 
-void gather(int vpl_count, Receiver receiver, out vec3 irradiance) {
+void gather(VplRange range, Receiver receiver, out vec3 irradiance) {
     irradiance = vec3(0.0);
-    for (int k = 0; k < vpl_count; ++k) {
+    for (int k = range.first; k < range.end; ++k) {
         Vpl vpl = as_disc(unpack_vpl(texelFetch(vpls, 2 * k), texelFetch(vpls, 2 * k + 1)));
         irradiance += vpl.strength * received_factor(k, vpl, receiver);
     }

@@ -7,10 +7,10 @@ layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform usampler2D surface;
 layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D diffuse;
+layout(set = 0, binding = 5, rgba32f) uniform image2D diffuse;
 
 layout(push_constant, scalar) uniform Push {
-    uint vpl_count;
+    VplRange range;
     uint has_specular;  // 0: no material has a specular lobe, `specular` is not read
 } push;
 
@@ -27,6 +27,10 @@ Receiver load_receiver(ivec2 pixel, ivec2 size, out vec3 response) {
     return Receiver(position_rs, point.normal);
 }
 
+void store_sum(ivec2 pixel, vec3 radiance) {
+    imageStore(diffuse, pixel, vec4(imageLoad(diffuse, pixel).rgb + radiance, 1.0));
+}
+
 void main() {
     ivec2 pixel = pixel_of_invocation(uvec2(16u, 8u));
     ivec2 other = pixel + ivec2(8, 0);
@@ -38,12 +42,12 @@ void main() {
     vec3 irradiance_a = vec3(0.0);
     vec3 irradiance_b = vec3(0.0);
     if (max3(response_a) + max3(response_b) > 0.0) {
-        gather(int(push.vpl_count), a, b, irradiance_a, irradiance_b);
+        gather(push.range, a, b, irradiance_a, irradiance_b);
     }
     if (is_inside(pixel, size)) {
-        imageStore(diffuse, pixel, vec4(irradiance_a * response_a, 1.0));
+        store_sum(pixel, irradiance_a * response_a);
     }
     if (is_inside(other, size)) {
-        imageStore(diffuse, other, vec4(irradiance_b * response_b, 1.0));
+        store_sum(other, irradiance_b * response_b);
     }
 }

@@ -4,18 +4,22 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 6) uniform usamplerBuffer list;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image2D irradiance;
+layout(set = 0, binding = 7, rgba32f) uniform image2D irradiance;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;         // pixels
     int level_count;
-    uint vpl_count;
+    VplRange range;
 } push;
 
 // The number `index` of the list as a texel of the flattened image.
 ivec2 listed_texel(uint index) {
     uint texel = texelFetch(list, int(4u + index)).x;
     return ivec2(texel & 0xFFFFu, texel >> 16);
+}
+
+void store_sum(ivec2 texel, vec3 sum, vec3 normal) {
+    imageStore(irradiance, texel, vec4(imageLoad(irradiance, texel).rgb + sum, pack_direction_in_float(normal)));
 }
 
 void main() {
@@ -31,9 +35,9 @@ void main() {
     Receiver b = receiver_of_region(region_at(push.size, texel_b, push.level_count), push.size);
     vec3 irradiance_a;
     vec3 irradiance_b;
-    gather(int(push.vpl_count), a, b, irradiance_a, irradiance_b);
-    imageStore(irradiance, texel_a, vec4(irradiance_a, pack_direction_in_float(a.normal)));
+    gather(push.range, a, b, irradiance_a, irradiance_b);
+    store_sum(texel_a, irradiance_a, a.normal);
     if (has_second) {
-        imageStore(irradiance, texel_b, vec4(irradiance_b, pack_direction_in_float(b.normal)));
+        store_sum(texel_b, irradiance_b, b.normal);
     }
 }

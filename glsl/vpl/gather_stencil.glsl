@@ -10,13 +10,16 @@ layout(location = 0) out vec4 irradiance;
 layout(push_constant, scalar) uniform Push {
     ivec2 size;         // pixels
     int level_count;
-    uint vpl_count;
+    VplRange range;
 } push;
 
 void main() {
-    atomicAdd(invocations[0], 1u);
+    bool first = push.range.first == 0;
+    if (first) {
+        atomicAdd(invocations[0], 1u);
+    }
     Receiver receiver = receiver_of_region(region_at(push.size, ivec2(gl_FragCoord.xy), push.level_count), push.size);
     vec3 sum;
-    gather(int(push.vpl_count), receiver, sum);
-    irradiance = vec4(sum, pack_direction_in_float(receiver.normal));
+    gather(push.range, receiver, sum);
+    irradiance = vec4(sum, first ? pack_direction_in_float(receiver.normal) : 0.0);
 }

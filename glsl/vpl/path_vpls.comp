@@ -5,6 +5,7 @@
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
 #include "lib/vpl.glsl"
+#include "vpl/disc.glsl"
 #include "vpl/paths.glsl"
 #include "vpl/rays.glsl"
 
@@ -15,7 +16,7 @@
 //
 // in W and m². ΣΦ' over a bounce is on average what the scene reflects of the bounce before. D is the density of the bounce's VPLs
 // around y, over all from which a path may have come there, so that the disc of each has the area which it stands for; what hides them from
-// y is left out of it. A disc is no wider than its path is long.
+// y is left out of it. So a disc's radiosity is what gathering the bounce before gives there, without visibility.
 
 layout(local_size_x = 64) in;
 
@@ -87,9 +88,8 @@ float density_of_paths(vec3 position_rs, vec3 normal) {
     uint seen = 0u;
     for (uint i = 0u; i < push.bounce.parent_count; i += step) {
         uint parent = push.bounce.parents + i;
-        Vpl vpl = unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]);
-        vpl.normal = normalize(vpl.normal);
-        sum += max3(vpl.strength) > 0.0 ? vpl_form_factor(vpl, position_rs, normal) : 0.0;
+        Vpl vpl = as_disc(unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]));
+        sum += max3(vpl.strength) > 0.0 ? disc_form_factor(vpl, position_rs, normal) : 0.0;
         ++seen;
     }
     return INVERSE_PI * sum * (float(push.bounce.child_count) / float(seen));
@@ -112,7 +112,7 @@ void main() {
         vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - rays.shift;
         vec3 face = front_normal(triangle);
         vec3 normal = dot(face, vpl.position_rs - position_rs) < 0.0 ? -face : face;
-        float area = min(1.0 / max(density_of_paths(position_rs, normal), 1e-30), PI * hit.x * hit.x);
+        float area = min(1.0 / max(density_of_paths(position_rs, normal), 1e-30), PI * rays.radius * rays.radius);
         position = pack_vpl_position(position_rs, area);
         strength = pack_vpl_strength(flux * albedo_at(triangle, vec3(1.0 - hit.y - hit.z, hit.yz)), normal);
     }

@@ -5,6 +5,7 @@
 struct VplRays {
     vec3 shift;    // from render space to the space of rays
     float offset;  // metres
+    float radius;  // of the scene, metres
 };
 
 #endif

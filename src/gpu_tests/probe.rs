@@ -9,7 +9,7 @@ use crate::frame::twins;
 use crate::graph::{Graph, ReadBack};
 use crate::reference::traced_scene::TracedScene;
 use crate::renderer::declare::{Declared, Prepared, declare};
-use crate::renderer::{DirectMethod, FrameRequest, Settings, Slot, Timing};
+use crate::renderer::{FrameRequest, Settings, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
 
@@ -35,7 +35,7 @@ pub(super) fn probe(
     let limit = device.limits().max_image_dimension2_d;
     let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
-    let traces = settings.methods.direct == DirectMethod::Traced;
+    let traces = Slot::ALL.into_iter().any(|slot| settings.sends_rays(slot));
     let traced = traces.then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
     let prepared = Prepared { scene, data: &data, lights: &set, traced: traced.as_ref() };
     let mut graph = Graph::new(&mut store);

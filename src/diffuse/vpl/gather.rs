@@ -1,17 +1,38 @@
 //! Irradiance from all VPLs, at pixels or at regions.
+//!
+//! Where rays are traced, a pass takes a range of the VPLs, and each adds to what the one before it found: the software driver ends all loops
+//! of an invocation after 65,535 steps together, those of the rays' ways through the hierarchy included.
 
 use ash::vk;
 
 use super::pyramid::{Pyramid, signed};
 use super::regions::{VALID, flattened_size};
-use super::visibility::Visibility;
+use super::visibility::{TRACED, Visibility};
 use super::{VplInputs, vpl_count};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
+use crate::shaders::types::VplRange;
 use crate::shaders::vpl::{
     GatherPixels, GatherPixelsPush, GatherRegions, GatherRegionsPush, GatherStencil, GatherStencilPush,
 };
 use crate::vulkan::{RasterState, StencilState};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const BLACK: ClearColor = ClearColor::Float([0.0; 4]);
+
+/// VPLs that a pass sends rays to, from two receivers.
+const TRACED_VPLS: u32 = 96;
+
+/// What each pass takes, and its name.
+fn ranges(name: &str, vpl_count: u32, visibility: &Visibility) -> Vec<(String, VplRange)> {
+    let most = if visibility.kind == TRACED { TRACED_VPLS } else { vpl_count.max(1) };
+    let pass = |part: u32| {
+        let (first, end) = (part * most, ((part + 1) * most).min(vpl_count));
+        let name = if part == 0 { name.to_owned() } else { format!("{name}-{}", part + 1) };
+        (name, VplRange { first: first.cast_signed(), end: end.cast_signed() })
+    };
+    (0..vpl_count.div_ceil(most)).map(pass).collect()
+}
 
 /// The slot, gathered at every pixel.
 pub(super) fn gather_pixels(
@@ -21,42 +42,39 @@ pub(super) fn gather_pixels(
     visibility: &Visibility,
     diffuse: ImageRef,
 ) {
-    let (buffer, visibility) = (inputs.buffer, visibility.clone());
-    let rays = visibility.rays;
-    let vpl_count = vpl_count(vpls);
+    let (buffer, rays) = (inputs.buffer, &visibility.rays);
     let (specular, has_specular) = buffer.specular();
-    let pass = GatherPixels {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        specular: specular.sampled(),
-        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
-        diffuse: diffuse.write(),
-        visibility: visibility.kind,
-        ism_resolution: visibility.ism_resolution,
-        ism_maps: visibility.ism_maps,
-        eye: buffer.camera.clone(),
-        bvh_nodes: rays.bvh_nodes,
-        bvh_triangles: rays.bvh_triangles,
-        rays: rays.rays,
-        triangles: rays.triangles,
-        corner_colors: rays.corner_colors,
-        corner_texcoords: rays.corner_texcoords,
-        materials: rays.materials,
-        material_textures: rays.material_textures,
-        texture_table: rays.texture_table,
-        texels: rays.texels,
-        alpha_masks: rays.alpha_masks,
-        vertex_colors: rays.vertex_colors,
-        push: GatherPixelsPush { vpl_count, has_specular },
-    };
     let [width, height] = buffer.size;
-    let terms = u64::from(width) * u64::from(height) * u64::from(vpl_count);
-    graph.pass("diffuse/vpl/gather-pixels", pass).note("VPL terms", terms).groups([
-        width.div_ceil(16),
-        height.div_ceil(8),
-        1,
-    ]);
+    graph.clear_image("diffuse/vpl/clear", diffuse, BLACK);
+    for (name, range) in ranges("diffuse/vpl/gather-pixels", vpl_count(vpls), visibility) {
+        let terms = u64::from(width) * u64::from(height) * u64::from((range.end - range.first).cast_unsigned());
+        let pass = GatherPixels {
+            camera: buffer.camera.clone(),
+            depth: buffer.depth.sampled(),
+            surface: buffer.surface.sampled(),
+            specular: specular.sampled(),
+            vpls: vpls.texels(FLOATS),
+            diffuse: diffuse.read_write(),
+            visibility: visibility.kind,
+            ism_resolution: visibility.ism_resolution,
+            ism_maps: visibility.ism_maps.clone(),
+            eye: buffer.camera.clone(),
+            bvh_nodes: rays.bvh_nodes.clone(),
+            bvh_triangles: rays.bvh_triangles.clone(),
+            rays: rays.rays.clone(),
+            triangles: rays.triangles.clone(),
+            corner_colors: rays.corner_colors.clone(),
+            corner_texcoords: rays.corner_texcoords.clone(),
+            materials: rays.materials.clone(),
+            material_textures: rays.material_textures.clone(),
+            texture_table: rays.texture_table.clone(),
+            texels: rays.texels.clone(),
+            alpha_masks: rays.alpha_masks,
+            vertex_colors: rays.vertex_colors,
+            push: GatherPixelsPush { range, has_specular },
+        };
+        graph.pass(&name, pass).note("VPL terms", terms).groups([width.div_ceil(16), height.div_ceil(8), 1]);
+    }
 }
 
 /// Regions that one group of the list's gather takes.
@@ -71,45 +89,46 @@ pub(super) fn gather_list(
     pyramid: &Pyramid,
     list: BufferRef<u32>,
 ) -> ImageRef {
-    let (buffer, visibility) = (inputs.buffer, visibility.clone());
-    let rays = visibility.rays;
+    let (buffer, rays) = (inputs.buffer, &visibility.rays);
     let irradiance = flattened(graph, buffer.size);
-    graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
-    let pass = GatherRegions {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        normals: pyramid.normals.sampled(),
-        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
-        list: list.texels(vk::Format::R32_UINT),
-        irradiance: irradiance.modify(),
-        visibility: visibility.kind,
-        ism_resolution: visibility.ism_resolution,
-        ism_maps: visibility.ism_maps,
-        eye: buffer.camera.clone(),
-        bvh_nodes: rays.bvh_nodes,
-        bvh_triangles: rays.bvh_triangles,
-        rays: rays.rays,
-        triangles: rays.triangles,
-        corner_colors: rays.corner_colors,
-        corner_texcoords: rays.corner_texcoords,
-        materials: rays.materials,
-        material_textures: rays.material_textures,
-        texture_table: rays.texture_table,
-        texels: rays.texels,
-        alpha_masks: rays.alpha_masks,
-        vertex_colors: rays.vertex_colors,
-        push: GatherRegionsPush {
-            size: signed(buffer.size),
-            level_count: pyramid.level_count.cast_signed(),
-            vpl_count: vpl_count(vpls),
-        },
-    };
-    graph.pass("diffuse/vpl/gather-regions", pass).count("regions", list, 3).threads_indirect(list, 0);
+    graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, BLACK);
+    for (name, range) in ranges("diffuse/vpl/gather-regions", vpl_count(vpls), visibility) {
+        let pass = GatherRegions {
+            camera: buffer.camera.clone(),
+            depth: buffer.depth.sampled(),
+            surface: buffer.surface.sampled(),
+            normals: pyramid.normals.sampled(),
+            vpls: vpls.texels(FLOATS),
+            list: list.texels(vk::Format::R32_UINT),
+            irradiance: irradiance.read_write(),
+            visibility: visibility.kind,
+            ism_resolution: visibility.ism_resolution,
+            ism_maps: visibility.ism_maps.clone(),
+            eye: buffer.camera.clone(),
+            bvh_nodes: rays.bvh_nodes.clone(),
+            bvh_triangles: rays.bvh_triangles.clone(),
+            rays: rays.rays.clone(),
+            triangles: rays.triangles.clone(),
+            corner_colors: rays.corner_colors.clone(),
+            corner_texcoords: rays.corner_texcoords.clone(),
+            materials: rays.materials.clone(),
+            material_textures: rays.material_textures.clone(),
+            texture_table: rays.texture_table.clone(),
+            texels: rays.texels.clone(),
+            alpha_masks: rays.alpha_masks,
+            vertex_colors: rays.vertex_colors,
+            push: GatherRegionsPush {
+                size: signed(buffer.size),
+                level_count: pyramid.level_count.cast_signed(),
+                range,
+            },
+        };
+        graph.pass(&name, pass).count("regions", list, 3).threads_indirect(list, 0);
+    }
     irradiance
 }
 
-/// The same where the stencil is marked. Returns the count of invocations besides.
+/// The same where the stencil is marked. Returns the count of the first pass's invocations besides.
 pub(super) fn gather_stencil(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
@@ -118,52 +137,57 @@ pub(super) fn gather_stencil(
     pyramid: &Pyramid,
     stencil: ImageRef,
 ) -> (ImageRef, BufferRef<u32>) {
-    let (buffer, visibility) = (inputs.buffer, visibility.clone());
-    let rays = visibility.rays;
+    let (buffer, rays) = (inputs.buffer, &visibility.rays);
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
     graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);
-    let pass = GatherStencil {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        normals: pyramid.normals.sampled(),
-        vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
-        invocations: invocations.read_write(),
-        visibility: visibility.kind,
-        ism_resolution: visibility.ism_resolution,
-        ism_maps: visibility.ism_maps,
-        eye: buffer.camera.clone(),
-        bvh_nodes: rays.bvh_nodes,
-        bvh_triangles: rays.bvh_triangles,
-        rays: rays.rays,
-        triangles: rays.triangles,
-        corner_colors: rays.corner_colors,
-        corner_texcoords: rays.corner_texcoords,
-        materials: rays.materials,
-        material_textures: rays.material_textures,
-        texture_table: rays.texture_table,
-        texels: rays.texels,
-        alpha_masks: rays.alpha_masks,
-        vertex_colors: rays.vertex_colors,
-        push: GatherStencilPush {
-            size: signed(buffer.size),
-            level_count: pyramid.level_count.cast_signed(),
-            vpl_count: vpl_count(vpls),
-        },
-    };
-    let tests = StencilState { compare: vk::CompareOp::EQUAL, pass: vk::StencilOp::KEEP, reference: VALID };
-    let state =
-        RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, stencil: Some(tests), ..RasterState::default() };
-    graph
-        .raster("diffuse/vpl/gather-stencil", pass, state)
-        .count("regions", invocations, 0)
-        .color(irradiance, Some(ClearColor::Float([0.0; 4])))
-        .stencil(stencil, None)
-        .vertices(3, 1);
+    for (name, range) in ranges("diffuse/vpl/gather-stencil", vpl_count(vpls), visibility) {
+        let pass = GatherStencil {
+            camera: buffer.camera.clone(),
+            depth: buffer.depth.sampled(),
+            surface: buffer.surface.sampled(),
+            normals: pyramid.normals.sampled(),
+            vpls: vpls.texels(FLOATS),
+            invocations: invocations.read_write(),
+            visibility: visibility.kind,
+            ism_resolution: visibility.ism_resolution,
+            ism_maps: visibility.ism_maps.clone(),
+            eye: buffer.camera.clone(),
+            bvh_nodes: rays.bvh_nodes.clone(),
+            bvh_triangles: rays.bvh_triangles.clone(),
+            rays: rays.rays.clone(),
+            triangles: rays.triangles.clone(),
+            corner_colors: rays.corner_colors.clone(),
+            corner_texcoords: rays.corner_texcoords.clone(),
+            materials: rays.materials.clone(),
+            material_textures: rays.material_textures.clone(),
+            texture_table: rays.texture_table.clone(),
+            texels: rays.texels.clone(),
+            alpha_masks: rays.alpha_masks,
+            vertex_colors: rays.vertex_colors,
+            push: GatherStencilPush {
+                size: signed(buffer.size),
+                level_count: pyramid.level_count.cast_signed(),
+                range,
+            },
+        };
+        let tests = StencilState { compare: vk::CompareOp::EQUAL, pass: vk::StencilOp::KEEP, reference: VALID };
+        let state = RasterState {
+            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+            stencil: Some(tests),
+            additive: range.first > 0,
+            ..RasterState::default()
+        };
+        graph
+            .raster(&name, pass, state)
+            .count("regions", invocations, 0)
+            .color(irradiance, (range.first == 0).then_some(BLACK))
+            .stencil(stencil, None)
+            .vertices(3, 1);
+    }
     (irradiance, invocations)
 }
 
 fn flattened(graph: &mut Graph<'_>, size: [u32; 2]) -> ImageRef {
-    graph.image("vpl.irradiance", vk::Format::R32G32B32A32_SFLOAT, flattened_size(size))
+    graph.image("vpl.irradiance", FLOATS, flattened_size(size))
 }

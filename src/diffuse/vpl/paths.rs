@@ -15,12 +15,14 @@ use crate::shaders::vpl::{Copy, CopyPush, PathHits, PathHitsPush, PathVpls, Path
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// p̄ = 1/2: VPLs of a bounce for one of the next.
-const SHARE: u32 = 2;
+/// p̄, about what the surfaces of a room reflect: VPLs of the next bounce for those of one, so that all carry like flux.
+const SHARE: [u32; 2] = [2, 3];
 
 /// VPLs of each bounce.
 fn counts(first: u32, bounces: u32) -> Vec<u32> {
-    (0..bounces).scan(first, |count, _| Some(std::mem::replace(count, count.div_ceil(SHARE)))).collect()
+    (0..bounces)
+        .scan(first, |count, _| Some(std::mem::replace(count, (*count * SHARE[0]).div_ceil(SHARE[1]))))
+        .collect()
 }
 
 /// Declares the passes that add the bounces beyond the first to `first_bounce`; returns the VPLs of all.
@@ -92,10 +94,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_bounce_has_half_the_lights_of_the_one_before() {
-        assert_eq!(counts(256, 4), [256, 128, 64, 32]);
+    fn the_number_of_lights_falls_by_a_third_a_bounce() {
+        assert_eq!(counts(256, 4), [256, 171, 114, 76]);
         assert_eq!(counts(1, 3), [1, 1, 1]);
-        assert_eq!(counts(0, 2), [0, 0]);
+        assert!(counts(65536, 16).iter().sum::<u32>() < 200_000);
         assert_eq!(counts(5, 1), [5]);
     }
 }

@@ -1,6 +1,7 @@
 //! Whether light from a VPL may be blocked: not at all, by imperfect shadow maps, or by rays.
 
 use ash::vk;
+use glam::DVec3;
 
 use super::VplInputs;
 use super::ism::imperfect_shadow_maps;
@@ -11,6 +12,11 @@ use crate::shaders::types::VplRays;
 
 /// How far from a VPL's surface rays end or start, as a share of the scene's radius.
 const OFFSET: f64 = 3e-5;
+
+/// The kinds of glsl/vpl/visibility.glsl.
+const NONE: u32 = 0;
+const ISM: u32 = 1;
+pub(super) const TRACED: u32 = 2;
 
 /// What the kernels that gather bind for visibility (glsl/vpl/visibility.glsl).
 #[derive(Clone)]
@@ -42,11 +48,10 @@ pub(super) struct Rays {
 impl Rays {
     /// Of a frame that traces none, buffers that stand for what is not there.
     pub(super) fn new(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, vpls: BufferRef<[f32; 4]>) -> Rays {
-        let VplRays { shift, offset } = inputs.traced.map_or(VplRays { shift: [0.0; 3], offset: 0.0 }, |traced| {
-            let shift = (inputs.data.origin - traced.origin).as_vec3().to_array();
-            VplRays { shift, offset: (traced.radius * OFFSET) as f32 }
-        });
-        let rays = graph.upload("vpl.rays", &[VplRays { shift, offset }], Dependence::GEOMETRY).uniform();
+        let (radius, origin) = (inputs.data.radius, inputs.data.origin);
+        let shift = inputs.traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
+        let rays = VplRays { shift, offset: (radius * OFFSET) as f32, radius: radius as f32 };
+        let rays = graph.upload("vpl.rays", &[rays], Dependence::GEOMETRY).uniform();
         match inputs.traced {
             Some(traced) => {
                 let scene = traced.import(graph);
@@ -98,12 +103,12 @@ impl Visibility {
     ) -> Visibility {
         let none = vpls.texels(vk::Format::R32G32B32A32_SFLOAT);
         let (kind, ism_resolution, ism_maps) = match inputs.settings.visibility {
-            VplVisibility::None => (0, 1, none),
+            VplVisibility::None => (NONE, 1, none),
             VplVisibility::Ism => {
                 let maps = imperfect_shadow_maps(graph, inputs.data, inputs.geometry, vpls, inputs.settings);
-                (1, maps.resolution, maps.texels())
+                (ISM, maps.resolution, maps.texels())
             }
-            VplVisibility::Traced => (2, 1, none),
+            VplVisibility::Traced => (TRACED, 1, none),
         };
         Visibility { kind, ism_resolution, ism_maps, rays }
     }
