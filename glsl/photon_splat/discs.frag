@@ -16,6 +16,8 @@ layout(set = 0, binding = 4) uniform usampler2D surface;
 layout(set = 0, binding = 5) uniform usamplerBuffer tile_peaks;
 layout(set = 0, binding = 6) buffer SumBlock { uint sums[]; };
 
+#include "photon_splat/sums.glsl"
+
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
@@ -25,16 +27,6 @@ layout(push_constant, scalar) uniform Push {
 layout(location = 0) flat in vec4 center;
 layout(location = 1) flat in vec3 irradiance;
 layout(location = 2) flat in vec3 disc_normal;
-
-// A term fits into the low word; so many that the high word overflows are not.
-const int TERM_BITS = 30;
-
-void add(uint word, uint units) {
-    uint before = atomicAdd(sums[word], units);
-    if (before + units < before) {
-        atomicAdd(sums[word + 4u], 1u);
-    }
-}
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
@@ -46,11 +38,7 @@ void main() {
         ivec2 size = lattice_size(push.image_size, push.downscale);
         ivec2 tile = place / TILE_SIDE;
         int index = tile.y * tiles_a_row(size) + tile.x;
-        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x), TERM_BITS);
-        uint word = 8u * uint(TILE_SAMPLES * index + index_in_tile(place));
-        uvec3 terms = to_fixed(irradiance * (weight * scale));
-        add(word, terms.x);
-        add(word + 1u, terms.y);
-        add(word + 2u, terms.z);
+        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x));
+        add_to_sums(TILE_SAMPLES * index + index_in_tile(place), to_fixed(irradiance * (weight * scale)), uvec3(0u));
     }
 }

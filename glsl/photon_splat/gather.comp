@@ -31,6 +31,12 @@ layout(set = 0, binding = 9) uniform samplerBuffer sorted_centers;
 layout(set = 0, binding = 10) uniform samplerBuffer sorted_normals;
 layout(set = 0, binding = 11) uniform samplerBuffer sorted_irradiances;
 layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 13) buffer SumBlock { uint sums[]; };
+
+#include "photon_splat/sums.glsl"
+
+// A group takes one part of the photons of a crowded tile, and adds to `sums` what resolve.comp then makes the result of.
+layout(constant_id = 1) const uint CROWDED = 0u;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
@@ -40,13 +46,15 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;
 } push;
 
-// Each term is at most 2^28, so that eight of them stay below 2^32; then they go into 64 bits.
-const int TERM_BITS = 28;
-
 // Four samples an invocation, which share the loads of a photon.
 Receiver receivers[4];
 uvec3 sums_low[4];
 uvec3 sums_high[4];
+
+// The photons that a block looks through are numbered in the order of its cells: those that come before the next run, and those to take.
+int numbered = 0;
+int first_taken = 0;
+int end_taken = 0x3FFFFFFF;
 
 shared vec3 lows[64];
 shared vec3 highs[64];
@@ -85,7 +93,7 @@ void add_run(vec4 sphere, int first, int end, float scale) {
         int candidate = min(first + int(lane), end - 1);
         bool near = may_reach(texelFetch(sorted_centers, candidate), sphere) && first + int(lane) < end;
         uint passed = subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u);
-        uvec3 sums[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
+        uvec3 terms[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
         while (passed != 0u) {
             int photon = first + findLSB(passed);
             vec4 center = texelFetch(sorted_centers, photon);
@@ -94,13 +102,13 @@ void add_run(vec4 sphere, int first, int end, float scale) {
             float height_limit = allowed_height(center.w, push.tolerance);
             [[unroll]] for (int which = 0; which < 4; ++which) {
                 vec3 offset = (receivers[which].position_rs - center.xyz) * center.w;
-                sums[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, height_limit));
+                terms[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, height_limit));
             }
             passed &= passed - 1u;
         }
         [[unroll]] for (int which = 0; which < 4; ++which) {
-            sums_low[which] += sums[which];
-            sums_high[which] += uvec3(lessThan(sums_low[which], sums[which]));
+            sums_low[which] += terms[which];
+            sums_high[which] += uvec3(lessThan(sums_low[which], terms[which]));
         }
     }
 }
@@ -111,7 +119,9 @@ void add_level(vec4 sphere, ivec2 block, int level, float scale) {
     for (int y = around.y; y <= around.w; ++y) {
         int first = int(texelFetch(cell_starts, cell_index(ivec2(around.x, y), cells)).x);
         int end = int(texelFetch(cell_starts, cell_index(ivec2(around.z + 1, y), cells)).x);
-        add_run(sphere, first, end, scale);
+        int number = numbered - first;
+        numbered += end - first;
+        add_run(sphere, max(first, first_taken - number), min(end, end_taken - number), scale);
     }
 }
 
@@ -125,7 +135,12 @@ void store(ivec2 place, vec3 irradiance) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles);
+    int tile = CROWDED != 0u
+        ? listed_tile(state, tiles, STATE_CROWDED, gl_WorkGroupID.z) : listed_tile(state, tiles, STATE_TILES, gl_WorkGroupID.y);
+    if (CROWDED != 0u) {
+        first_taken = int(gl_WorkGroupID.y * PART_PHOTONS);
+        end_taken = first_taken + int(PART_PHOTONS);
+    }
     ivec2 size = lattice_size(push.image_size, push.downscale);
     [[unroll]] for (int which = 0; which < 4; ++which) {
         ivec2 place = sample_of_tile(max(tile, 0), size, which);
@@ -136,7 +151,7 @@ void main() {
         sums_high[which] = uvec3(0u);
     }
     vec4 sphere = bounding_sphere();
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x), TERM_BITS);
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x));
     if (sphere.w >= 0.0) {
         uint filled = texelFetch(state, int(STATE_LEVELS)).x;
         ivec2 block = sample_of_tile(tile, size, 0) & ~(BLOCK - 1);
@@ -148,7 +163,13 @@ void main() {
     }
     [[unroll]] for (int which = 0; which < 4; ++which) {
         ivec2 place = sample_of_tile(max(tile, 0), size, which);
-        if (tile != NO_TILE && is_inside(place, size)) {
+        if (tile == NO_TILE || !is_inside(place, size)) {
+            continue;
+        }
+        if (CROWDED != 0u) {
+            int index = TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which);
+            add_to_sums(index, sums_low[which], sums_high[which]);
+        } else {
             store(place, from_fixed(sums_low[which], sums_high[which], scale));
         }
     }

@@ -78,6 +78,12 @@ float lattice_sum(Photon photon, float radius, Extent extent) {
     return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * radius);
 }
 
+// Comparisons with what is no number are false.
+bool is_sound(Photon photon) {
+    return all(lessThan(abs(photon.position_rs), vec3(1e15))) && photon.radius < 1e15
+        && all(greaterThanEqual(photon.flux, vec3(0.0))) && all(lessThan(photon.flux, vec3(1e30)));
+}
+
 void main() {
     if (gl_LocalInvocationIndex == 0u) {
         levels_of_group = 0u;
@@ -99,13 +105,10 @@ void main() {
         if (radius * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
             irradiance /= clamp(lattice_sum(photon, radius, extent), 0.5, 2.0);
         }
-        float peak = min(max3(irradiance), 1e30);
-        irradiance = clamp(irradiance, vec3(0.0), vec3(1e30));
-        // Comparisons with what is no number are false.
-        bool kept = peak > 0.0 && extent.radius.x > 0.0 && radius > 0.0 && extent.center.x == extent.center.x
-            && extent.center.y == extent.center.y;
+        irradiance = min(irradiance, vec3(1e30));
+        float peak = max3(irradiance);
         uvec2 place = uvec2(NO_CELL, 0u);
-        if (kept) {
+        if (is_sound(photon) && peak > 0.0 && extent.radius.x > 0.0) {
             float reach = max(extent.radius.x, extent.radius.y);
             int level = 0;
             while (level < push.level_count - 1 && reach > reach_of_level(level)) {

@@ -7,7 +7,7 @@
 // The slot `caustics` of the pixels of one tile of samples: their irradiance, interpolated between samples of the same surface (Quyen 2014,
 // section 3.3.2.4), times what the surface answers.
 //
-//   E = Σ_j w_j·E_j / Σ_j w_j      w_j = bilinear · ((n·n_j)⁺)¹⁶ · (1 − |n·(x_j − x)|/2f)⁺
+//   E = Σ_j w_j·E_j / Σ_j w_j      w_j = bilinear · ((n·n_j)⁺)¹⁶ · (1 − 2|n·(x_j − x)|/f)⁺
 //
 // f is the distance of samples at x. In the paper the last factor is 1/(1 + |Δdepth|), which depends on the unit of length and darkens
 // slanted planes. The bilinear weight is that of the 2×2 samples around; where none of them is of the pixel's surface, all of the
@@ -28,6 +28,7 @@ layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     uint has_specular;
+    uint list;
 } push;
 
 const float LEAST_WEIGHT = 1e-3;
@@ -41,7 +42,7 @@ vec4 weighed(Receiver at, float extent, ivec2 place) {
     float power = cosine * cosine;
     power *= power;
     power *= power;
-    float weight = other.valid ? power * power * max(1.0 - 0.5 * height / extent, 0.0) : 0.0;
+    float weight = other.valid ? power * power * max(1.0 - 2.0 * height / extent, 0.0) : 0.0;
     return vec4(texelFetch(irradiance, place, 0).rgb, 1.0) * weight;
 }
 
@@ -66,7 +67,7 @@ vec3 interpolated(Receiver at, float extent, ivec2 pixel) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles);
+    int tile = listed_tile(state, tiles, push.list);
     if (tile == NO_TILE) {
         return;
     }
