@@ -59,23 +59,21 @@ float lattice_sum(Photon photon, float radius, Extent extent) {
     ivec2 last = ivec2(floor(extent.center + extent.radius - 0.5));
     vec2 corner = ndc_of_pixel(first * push.downscale + push.downscale / 2, push.image_size);
     vec3 row = corner.x * camera.right_scaled + corner.y * camera.down_scaled;
+    float inverse_radius = 1.0 / radius;
+    float area_factor = perspective ? 1.0 / abs(plane) : 1.0 / abs(along_normal);
     float sum = 0.0;
     for (int y = first.y; y <= last.y; ++y, row += y_step) {
         vec3 across = row;
         for (int x = first.x; x <= last.x; ++x, across += x_step) {
-            vec3 ray = camera.forward + across;
-            float z = plane / dot(ray, photon.normal);
-            vec3 point = ray * z;
-            float area = z * z * z / abs(plane);
-            if (!perspective) {
-                point = across + camera.forward * ((plane - dot(across, photon.normal)) / along_normal);
-                area = 1.0 / abs(along_normal);
-            }
-            vec3 from_center = (point - offset) / radius;
+            vec3 ray = perspective ? camera.forward + across : camera.forward;
+            vec3 start = perspective ? vec3(0.0) : across;
+            float z = (plane - dot(start, photon.normal)) / dot(ray, photon.normal);
+            float area = perspective ? z * z * z : 1.0;
+            vec3 from_center = (start + ray * z - offset) * inverse_radius;
             sum += area > 0.0 ? kernel_shape(dot(from_center, from_center)) * area : 0.0;
         }
     }
-    return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * radius);
+    return sum * area_factor * length(x_step) * length(y_step) * kernel_peak() * inverse_radius * inverse_radius;
 }
 
 // Comparisons with what is no number are false.

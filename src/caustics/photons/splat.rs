@@ -22,7 +22,9 @@ use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::renderer::{PhotonKernel, PhotonSettings, PhotonSplatting};
-use crate::shaders::photon_splat::{Clear, ClearPush, Project, ProjectPush, Resolve, ResolvePush, Start, StartPush, Touch, TouchPush};
+use crate::shaders::photon_splat::{
+    Clear, ClearPush, Project, ProjectPush, Resolve, ResolvePush, Start, StartPush, Touch, TouchPush,
+};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
 const STATE_WORDS: usize = 18;
@@ -40,6 +42,12 @@ pub(super) enum TileList {
 impl TileList {
     pub(super) fn word(self) -> usize {
         self as usize
+    }
+
+    /// The name of a pass over the list.
+    pub(super) fn pass_name(self, pass: &str) -> String {
+        let suffix = if self == TileList::Crowded { "-crowded" } else { "" };
+        format!("caustics/photons/{pass}{suffix}")
     }
 }
 
@@ -256,7 +264,7 @@ impl Splat<'_> {
             sums: sums.write(),
             push: ClearPush { list: list.word() as u32 },
         };
-        graph.pass("caustics/photons/clear-sums", pass).threads_indirect(self.state, list.word());
+        graph.pass(&list.pass_name("clear-sums"), pass).threads_indirect(self.state, list.word());
         sums
     }
 
@@ -278,7 +286,7 @@ impl Splat<'_> {
                 list: list.word() as u32,
             },
         };
-        graph.pass("caustics/photons/resolve", pass).threads_indirect(self.state, list.word());
+        graph.pass(&list.pass_name("resolve"), pass).threads_indirect(self.state, list.word());
     }
 
     pub(super) fn tile_peak_texels(&self) -> TexelBuffer {

@@ -74,13 +74,11 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         }
     };
     let list = TileList::Ordinary;
-    graph.pass("caustics/photons/gather", gather(sorted_count, list)).threads_indirect(splat.state, list.word());
+    graph.pass(&list.pass_name("gather"), gather(sorted_count, list)).threads_indirect(splat.state, list.word());
     if splat.may_crowd {
         let list = TileList::Crowded;
         let sums = splat.cleared_sums(graph, list);
-        graph
-            .pass("caustics/photons/gather-crowded", gather(sums, list))
-            .threads_indirect(splat.state, PARTS_WORD);
+        graph.pass(&list.pass_name("gather"), gather(sums, list)).threads_indirect(splat.state, PARTS_WORD);
         splat.resolve(graph, list, sums);
     }
 }

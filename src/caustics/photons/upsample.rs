@@ -26,6 +26,6 @@ pub(super) fn upsample(graph: &mut Graph<'_>, splat: &Splat<'_>, slot: ImageRef)
                 list: list.word() as u32,
             },
         };
-        graph.pass("caustics/photons/upsample", pass).threads_indirect(splat.state, list.word());
+        graph.pass(&list.pass_name("upsample"), pass).threads_indirect(splat.state, list.word());
     }
 }
