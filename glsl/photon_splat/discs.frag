@@ -1,9 +1,9 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "photon_splat/disc.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/receiver.glsl"
 #include "photon_splat/tile.glsl"
+#include "photon_splat/weight.glsl"
 
 // One photon's irradiance at one sample, Φ·K(d/h)/h² (photon_splat/disc.glsl), added to that sample's sum: Quyen 2014, section 3.3.2.3. In
 // place of blending, whose rounding depends on the photons' order, sums are 64-bit integers in two words.
@@ -24,21 +24,21 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;
 } push;
 
-layout(location = 0) flat in vec4 center;
-layout(location = 1) flat in vec3 irradiance;
-layout(location = 2) flat in vec3 disc_normal;
+layout(location = 0) flat in vec3 center;
+layout(location = 1) flat in vec4 irradiance;
+layout(location = 2) flat in vec4 disc_normal;
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
     Receiver receiver = load_receiver(camera, depth, surface, pixel, push.image_size);
-    vec3 offset = (receiver.position_rs - center.xyz) * center.w;
-    float weight = disc_weight(offset, receiver.normal, disc_normal, allowed_height(center.w, push.tolerance));
+    vec3 offset = receiver.position_rs - center;
+    float weight = disc_weight(offset, receiver.normal, disc_normal.xyz, disc_normal.w, irradiance.w);
     if (receiver.valid && weight > 0.0) {
         ivec2 size = lattice_size(push.image_size, push.downscale);
         ivec2 tile = place / TILE_SIDE;
         int index = tile.y * tiles_a_row(size) + tile.x;
         float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x));
-        add_to_sums(TILE_SAMPLES * index + index_in_tile(place), to_fixed(irradiance * (weight * scale)), uvec3(0u));
+        add_to_sums(TILE_SAMPLES * index + index_in_tile(place), to_fixed(irradiance.xyz * scale, weight), uvec3(0u));
     }
 }

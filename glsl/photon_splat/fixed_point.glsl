@@ -11,8 +11,8 @@ float fixed_point_scale(float peak) {
     return uintBitsToFloat(uint(127 + TERM_BITS - exponent) << 23);
 }
 
-uvec3 to_fixed(vec3 scaled) {
-    return uvec3(ivec3(scaled + 0.5));
+uvec3 to_fixed(vec3 scaled, float weight) {
+    return uvec3(ivec3(fma(scaled, vec3(weight), vec3(0.5))));
 }
 
 vec3 from_fixed(uvec3 low, uvec3 high, float scale) {

@@ -3,10 +3,10 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "photon_splat/answer.glsl"
-#include "photon_splat/disc.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/levels.glsl"
 #include "photon_splat/receiver.glsl"
+#include "photon_splat/weight.glsl"
 #include "photon_splat/listed_tile.glsl"
 
 // The caustic irradiance of four samples, E(x) = Σ_p Φ_p·K(d_p/h_p)/h_p² (photon_splat/disc.glsl), over the photons in the cells around it.
@@ -43,7 +43,6 @@ layout(push_constant, scalar) uniform Push {
     int downscale;
     int level_count;
     uint has_specular;
-    float tolerance;
 } push;
 
 // Four samples an invocation, which share the loads of a photon.
@@ -78,31 +77,28 @@ vec4 bounding_sphere() {
     return low.x > high.x ? vec4(0.0, 0.0, 0.0, -1.0) : vec4(0.5 * (low + high), 0.5001 * length(high - low));
 }
 
-bool may_reach(vec4 center, vec4 sphere) {
-    float height_limit = allowed_height(center.w, push.tolerance);
-    vec3 offset = (sphere.xyz - center.xyz) * center.w;
-    float reach = sqrt(1.0 + height_limit * height_limit) + sphere.w * center.w;
-    return dot(offset, offset) < reach * reach;
-}
-
 void add_run(vec4 sphere, int first, int end, float scale) {
     uint width = min(gl_SubgroupSize, 8u);
     uint lane = gl_SubgroupInvocationID & (width - 1u);
     uint shift = gl_SubgroupInvocationID - lane;
     for (; first < end; first += int(width)) {
         int candidate = min(first + int(lane), end - 1);
-        bool near = may_reach(texelFetch(sorted_centers, candidate), sphere) && first + int(lane) < end;
+        vec4 around = texelFetch(sorted_centers, candidate);
+        vec3 away = around.xyz - sphere.xyz;
+        float reach = around.w + sphere.w;
+        bool near = fused_dot(away, away) < reach * reach && first + int(lane) < end;
         uint passed = subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u);
         uvec3 terms[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
         while (passed != 0u) {
             int photon = first + findLSB(passed);
-            vec4 center = texelFetch(sorted_centers, photon);
-            vec3 normal = texelFetch(sorted_normals, photon).xyz;
-            vec3 irradiance = texelFetch(sorted_irradiances, photon).xyz * scale;
-            float height_limit = allowed_height(center.w, push.tolerance);
+            vec3 center = texelFetch(sorted_centers, photon).xyz;
+            vec4 normal = texelFetch(sorted_normals, photon);
+            vec4 irradiance = texelFetch(sorted_irradiances, photon);
+            vec3 most = irradiance.xyz * scale;
             [[unroll]] for (int which = 0; which < 4; ++which) {
-                vec3 offset = (receivers[which].position_rs - center.xyz) * center.w;
-                terms[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, height_limit));
+                vec3 offset = receivers[which].position_rs - center;
+                float weight = disc_weight(offset, receivers[which].normal, normal.xyz, normal.w, irradiance.w);
+                terms[which] += to_fixed(most, weight);
             }
             passed &= passed - 1u;
         }

@@ -3,6 +3,7 @@
 #include "photons/records.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
+#include "photon_splat/kernel.glsl"
 #include "photon_splat/levels.glsl"
 #include "photon_splat/state.glsl"
 
@@ -95,7 +96,7 @@ void main() {
         float cosine = max(abs(dot(to_eye, photon.normal)), 0.1);
         float sample_across = sample_extent(dot(offset, camera.forward));
         float radius = max(photon.radius, LEAST_SAMPLES * sample_across / cosine);
-        float height = radius * allowed_height(1.0 / radius, push.tolerance);
+        float height = allowed_height(radius, push.tolerance);
         Extent extent =
             disc_extent(camera, photon.position_rs, photon.normal, radius, height, push.image_size, push.downscale);
         vec3 irradiance = photon.flux * (kernel_peak() / (radius * radius));
@@ -121,7 +122,7 @@ void main() {
             atomicOr(levels_of_group, 1u << level);
         }
         places[index] = place;
-        discs[2u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(1.0 / radius));
+        discs[2u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(radius));
         discs[2u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
     }
     barrier();

@@ -38,7 +38,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_centers: centers.write(),
         sorted_normals: normals.write(),
         sorted_irradiances: irradiances.write(),
-        push: ScatterPush { stage: landed.stage as u32, reserved: 0 },
+        push: ScatterPush { stage: landed.stage as u32, tolerance: splat.tolerance },
     };
     graph
         .pass("caustics/photons/scatter", pass)
@@ -69,7 +69,6 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
                 downscale: splat.downscale,
                 level_count: grid.level_count,
                 has_specular,
-                tolerance: splat.tolerance,
             },
         }
     };
