@@ -462,8 +462,14 @@ fn any_flux_any_size_and_broken_photons() {
 }
 
 /// Photons, their radius in pixels of 512, how much of the image they cover.
-const CASES: [(usize, f64, f64); 6] =
-    [(0, 1.0, 1.0), (38_000, 8.0, 1.0), (38_000, 8.0, 0.4), (200_000, 8.0, 1.0), (200_000, 3.5, 1.0), (200_000, 3.5, 0.4)];
+const CASES: [(usize, f64, f64); 6] = [
+    (0, 1.0, 1.0),
+    (38_000, 8.0, 1.0),
+    (38_000, 8.0, 0.4),
+    (200_000, 8.0, 1.0),
+    (200_000, 3.5, 1.0),
+    (200_000, 3.5, 0.4),
+];
 
 /// Seconds that all threads but this one have computed, on Linux: those of a software driver.
 fn driver_seconds() -> f64 {
@@ -486,7 +492,8 @@ fn times() {
     for side in choice("SPLAT_SIDES", "512 1024").split(' ').map(|side| side.parse::<u32>().expect("a number")) {
         let mut bench = Bench::new(&session, &scene, &from_above(), [side; 2]);
         let pixel = (bench.on_floor(1.0, 0.0) - bench.on_floor(0.0, 0.0)).length() * f64::from(side) / 512.0;
-        for (count, radius, spread) in CASES.into_iter().take(choice("SPLAT_CASES", "9").parse().expect("a number")) {
+        for case in choice("SPLAT_CASES", "0 1 2 3 4 5").split(' ') {
+            let (count, radius, spread) = CASES[case.parse::<usize>().expect("a number")];
             let mut seed = 3;
             let photons: Vec<Landed> = (0..count)
                 .map(|_| {
@@ -504,7 +511,7 @@ fn times() {
                     let settings = settings(&[("splat", way), ("downscale", downscale)]);
                     let mut best = std::collections::BTreeMap::<String, f64>::new();
                     let (mut total, mut computed) = (f64::MAX, f64::MAX);
-                    for _ in 0..5 {
+                    for _ in 0..choice("SPLAT_FRAMES", "5").parse().expect("a number") {
                         bench.store.invalidate();
                         let before = driver_seconds();
                         let passes = bench.run(&settings, &photons, Timing::Passes).1;

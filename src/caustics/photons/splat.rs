@@ -148,7 +148,7 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         graph.clear_image("caustics/photons/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
         irradiance
     };
-    let (cells, tile_count) = (grid.cell_count as usize, grid.tile_count());
+    let (cells, tile_count, capacity) = (grid.cell_count as usize, grid.tile_count(), landed.capacity.max(1) as usize);
     let shared = Splat {
         buffer,
         landed: *landed,
@@ -157,8 +157,8 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         image_size: buffer.size.map(u32::cast_signed),
         downscale: downscale.cast_signed(),
         grid,
-        discs: graph.buffer("photons.discs", 2 * landed.capacity as usize),
-        places: graph.buffer("photons.places", landed.capacity as usize),
+        discs: graph.buffer("photons.discs", 2 * capacity),
+        places: graph.buffer("photons.places", capacity),
         cell_counts: graph.buffer("photons.cell_counts", cells),
         cell_peaks: graph.buffer("photons.cell_peaks", cells),
         tile_list: graph.buffer("photons.tiles", tile_count),

@@ -17,7 +17,8 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (grid, landed) = (&splat.grid, &splat.landed);
     let cell_starts = graph.buffer::<u32>("photons.cell_starts", grid.cell_count as usize);
     let sorted_count = graph.buffer::<u32>("photons.sorted_count", 1);
-    let mut sorted = |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity as usize);
+    let mut sorted =
+        |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity.max(1) as usize);
     let (centers, normals, irradiances) = (sorted("centers"), sorted("normals"), sorted("irradiances"));
 
     graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
