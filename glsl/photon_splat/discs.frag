@@ -1,9 +1,9 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "photon_splat/disc.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/receiver.glsl"
 #include "photon_splat/tile.glsl"
+#include "photon_splat/weight.glsl"
 
 // One photon's irradiance at one sample, Φ·K(d/h)/h² (photon_splat/disc.glsl), added to that sample's sum: Quyen 2014, section 3.3.2.3. In
 // place of blending, whose rounding depends on the photons' order, sums are 64-bit integers in two words.
@@ -16,42 +16,30 @@ layout(set = 0, binding = 4) uniform usampler2D surface;
 layout(set = 0, binding = 5) uniform usamplerBuffer tile_peaks;
 layout(set = 0, binding = 6) buffer SumBlock { uint sums[]; };
 
+#include "photon_splat/sums.glsl"
+
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     float tolerance;
 } push;
 
-layout(location = 0) flat in vec4 center;
-layout(location = 1) flat in vec3 irradiance;
-layout(location = 2) flat in vec3 disc_normal;
+layout(location = 0) flat in vec3 center;
+layout(location = 1) flat in vec4 irradiance;
+layout(location = 2) flat in vec4 disc_normal;
 layout(location = 3) flat in vec3 squeeze;
-
-// A term fits into the low word; so many that the high word overflows are not.
-const int TERM_BITS = 30;
-
-void add(uint word, uint units) {
-    uint before = atomicAdd(sums[word], units);
-    if (before + units < before) {
-        atomicAdd(sums[word + 4u], 1u);
-    }
-}
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
     Receiver receiver = load_receiver(camera, depth, surface, pixel, push.image_size);
-    vec3 offset = (receiver.position_rs - center.xyz) * center.w;
-    float weight = disc_weight(offset, receiver.normal, disc_normal, squeeze, allowed_height(center.w, push.tolerance));
+    vec3 offset = receiver.position_rs - center;
+    float weight = disc_weight(offset, receiver.normal, disc_normal.xyz, disc_normal.w, squeeze, irradiance.w);
     if (receiver.valid && weight > 0.0) {
         ivec2 size = lattice_size(push.image_size, push.downscale);
         ivec2 tile = place / TILE_SIDE;
         int index = tile.y * tiles_a_row(size) + tile.x;
-        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x), TERM_BITS);
-        uint word = 8u * uint(TILE_SAMPLES * index + index_in_tile(place));
-        uvec3 terms = to_fixed(irradiance * (weight * scale));
-        add(word, terms.x);
-        add(word + 1u, terms.y);
-        add(word + 2u, terms.z);
+        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x));
+        add_to_sums(TILE_SAMPLES * index + index_in_tile(place), to_fixed(irradiance.xyz * scale, weight), uvec3(0u));
     }
 }

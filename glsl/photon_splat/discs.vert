@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "lib/octahedral.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
 
@@ -15,31 +16,32 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;
 } push;
 
-layout(location = 0) flat out vec4 center;      // render space; 1/h
-layout(location = 1) flat out vec3 irradiance;  // W/m²
-layout(location = 2) flat out vec3 disc_normal;
-layout(location = 3) flat out vec3 squeeze;
+layout(location = 0) flat out vec3 center;       // render space
+layout(location = 1) flat out vec4 irradiance;   // W/m²; allowed height in m
+layout(location = 2) flat out vec4 disc_normal;  // 1/h²
+layout(location = 3) flat out vec3 squeeze;      // 1/m
 
 const uint NO_CELL = 0xFFFFFFFFu;
 
 void main() {
     int photon = gl_InstanceIndex;
+    vec4 place = uintBitsToFloat(texelFetch(discs, 3 * photon));
     uvec4 disc = texelFetch(discs, 3 * photon + 1);
-    center = uintBitsToFloat(texelFetch(discs, 3 * photon));
+    float height = allowed_height(place.w, push.tolerance);
+    vec3 normal = unpack_direction(disc.w);
+    center = place.xyz;
     squeeze = uintBitsToFloat(texelFetch(discs, 3 * photon + 2).xyz);
-    irradiance = uintBitsToFloat(disc.xyz);
-    disc_normal = unpack_direction(disc.w);
+    irradiance = vec4(uintBitsToFloat(disc.xyz), height);
+    disc_normal = vec4(normal, 1.0 / (place.w * place.w));
     gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
     if (texelFetch(places, photon).x != NO_CELL) {
-        float radius = 1.0 / center.w;
-        float height = radius * allowed_height(center.w, push.tolerance);
-        Extent extent = disc_extent(camera, center.xyz, disc_normal, radius, height, push.image_size, push.downscale);
+        Extent extent = disc_extent(camera, center, normal, place.w, height, push.image_size, push.downscale);
         vec2 size = vec2(lattice_size(push.image_size, push.downscale));
         vec2 low = clamp(extent.center - extent.radius, vec2(0.0), size);
         vec2 high = clamp(extent.center + extent.radius, vec2(0.0), size);
         // Corners 0 1 2 2 1 3 of two triangles.
         uint corner = 0x312210u >> (4u * (5u - gl_VertexIndex)) & 3u;
-        vec2 place = vec2((corner & 1u) != 0u ? high.x : low.x, (corner & 2u) != 0u ? high.y : low.y);
-        gl_Position = vec4(2.0 * place / size - 1.0, 0.0, 1.0);
+        vec2 position = vec2((corner & 1u) != 0u ? high.x : low.x, (corner & 2u) != 0u ? high.y : low.y);
+        gl_Position = vec4(2.0 * position / size - 1.0, 0.0, 1.0);
     }
 }

@@ -3,10 +3,10 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "photon_splat/answer.glsl"
-#include "photon_splat/disc.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/levels.glsl"
 #include "photon_splat/receiver.glsl"
+#include "photon_splat/weight.glsl"
 #include "photon_splat/listed_tile.glsl"
 
 // The caustic irradiance of four samples, E(x) = Σ_p Φ_p·K(d_p/h_p)/h_p² (photon_splat/disc.glsl), over the photons in the cells around it.
@@ -30,24 +30,31 @@ layout(set = 0, binding = 8) uniform usamplerBuffer cell_starts;
 layout(set = 0, binding = 9) uniform samplerBuffer sorted_centers;
 layout(set = 0, binding = 10) uniform samplerBuffer sorted_normals;
 layout(set = 0, binding = 11) uniform samplerBuffer sorted_irradiances;
-layout(set = 0, binding = 12) uniform samplerBuffer sorted_squeezes;
-layout(set = 0, binding = 13, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 13) buffer SumBlock { uint sums[]; };
+layout(set = 0, binding = 14) uniform samplerBuffer sorted_squeezes;
+
+#include "photon_splat/sums.glsl"
+
+// A group takes one part of the photons of a crowded tile, and adds to `sums` what resolve.comp then makes the result of.
+layout(constant_id = 1) const uint CROWDED = 0u;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     int level_count;
     uint has_specular;
-    float tolerance;
 } push;
-
-// Each term is at most 2^28, so that eight of them stay below 2^32; then they go into 64 bits.
-const int TERM_BITS = 28;
 
 // Four samples an invocation, which share the loads of a photon.
 Receiver receivers[4];
 uvec3 sums_low[4];
 uvec3 sums_high[4];
+
+// The photons that a block looks through are numbered in the order of its cells: those that come before the next run, and those to take.
+int numbered = 0;
+int first_taken = 0;
+int end_taken = 0x3FFFFFFF;
 
 shared vec3 lows[64];
 shared vec3 highs[64];
@@ -71,38 +78,35 @@ vec4 bounding_sphere() {
     return low.x > high.x ? vec4(0.0, 0.0, 0.0, -1.0) : vec4(0.5 * (low + high), 0.5001 * length(high - low));
 }
 
-bool may_reach(vec4 center, vec4 sphere) {
-    float height_limit = allowed_height(center.w, push.tolerance);
-    vec3 offset = (sphere.xyz - center.xyz) * center.w;
-    float reach = sqrt(1.0 + height_limit * height_limit) + sphere.w * center.w;
-    return dot(offset, offset) < reach * reach;
-}
-
 void add_run(vec4 sphere, int first, int end, float scale) {
     uint width = min(gl_SubgroupSize, 8u);
     uint lane = gl_SubgroupInvocationID & (width - 1u);
     uint shift = gl_SubgroupInvocationID - lane;
     for (; first < end; first += int(width)) {
         int candidate = min(first + int(lane), end - 1);
-        bool near = may_reach(texelFetch(sorted_centers, candidate), sphere) && first + int(lane) < end;
+        vec4 around = texelFetch(sorted_centers, candidate);
+        vec3 away = around.xyz - sphere.xyz;
+        float reach = around.w + sphere.w;
+        bool near = fused_dot(away, away) < reach * reach && first + int(lane) < end;
         uint passed = subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u);
-        uvec3 sums[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
+        uvec3 terms[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
         while (passed != 0u) {
             int photon = first + findLSB(passed);
-            vec4 center = texelFetch(sorted_centers, photon);
-            vec3 normal = texelFetch(sorted_normals, photon).xyz;
-            vec3 irradiance = texelFetch(sorted_irradiances, photon).xyz * scale;
+            vec3 center = texelFetch(sorted_centers, photon).xyz;
+            vec4 normal = texelFetch(sorted_normals, photon);
+            vec4 irradiance = texelFetch(sorted_irradiances, photon);
             vec3 squeeze = ELLIPTIC != 0u ? texelFetch(sorted_squeezes, photon).xyz : vec3(0.0);
-            float height_limit = allowed_height(center.w, push.tolerance);
+            vec3 most = irradiance.xyz * scale;
             [[unroll]] for (int which = 0; which < 4; ++which) {
-                vec3 offset = (receivers[which].position_rs - center.xyz) * center.w;
-                sums[which] += to_fixed(irradiance * disc_weight(offset, receivers[which].normal, normal, squeeze, height_limit));
+                vec3 offset = receivers[which].position_rs - center;
+                float weight = disc_weight(offset, receivers[which].normal, normal.xyz, normal.w, squeeze, irradiance.w);
+                terms[which] += to_fixed(most, weight);
             }
             passed &= passed - 1u;
         }
         [[unroll]] for (int which = 0; which < 4; ++which) {
-            sums_low[which] += sums[which];
-            sums_high[which] += uvec3(lessThan(sums_low[which], sums[which]));
+            sums_low[which] += terms[which];
+            sums_high[which] += uvec3(lessThan(sums_low[which], terms[which]));
         }
     }
 }
@@ -113,7 +117,9 @@ void add_level(vec4 sphere, ivec2 block, int level, float scale) {
     for (int y = around.y; y <= around.w; ++y) {
         int first = int(texelFetch(cell_starts, cell_index(ivec2(around.x, y), cells)).x);
         int end = int(texelFetch(cell_starts, cell_index(ivec2(around.z + 1, y), cells)).x);
-        add_run(sphere, first, end, scale);
+        int number = numbered - first;
+        numbered += end - first;
+        add_run(sphere, max(first, first_taken - number), min(end, end_taken - number), scale);
     }
 }
 
@@ -127,7 +133,12 @@ void store(ivec2 place, vec3 irradiance) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles);
+    int tile = CROWDED != 0u
+        ? listed_tile(state, tiles, STATE_CROWDED, gl_WorkGroupID.z) : listed_tile(state, tiles, STATE_TILES, gl_WorkGroupID.y);
+    if (CROWDED != 0u) {
+        first_taken = int(gl_WorkGroupID.y * PART_PHOTONS);
+        end_taken = first_taken + int(PART_PHOTONS);
+    }
     ivec2 size = lattice_size(push.image_size, push.downscale);
     [[unroll]] for (int which = 0; which < 4; ++which) {
         ivec2 place = sample_of_tile(max(tile, 0), size, which);
@@ -138,7 +149,7 @@ void main() {
         sums_high[which] = uvec3(0u);
     }
     vec4 sphere = bounding_sphere();
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x), TERM_BITS);
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x));
     if (sphere.w >= 0.0) {
         uint filled = texelFetch(state, int(STATE_LEVELS)).x;
         ivec2 block = sample_of_tile(tile, size, 0) & ~(BLOCK - 1);
@@ -150,7 +161,13 @@ void main() {
     }
     [[unroll]] for (int which = 0; which < 4; ++which) {
         ivec2 place = sample_of_tile(max(tile, 0), size, which);
-        if (tile != NO_TILE && is_inside(place, size)) {
+        if (tile == NO_TILE || !is_inside(place, size)) {
+            continue;
+        }
+        if (CROWDED != 0u) {
+            int index = TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which);
+            add_to_sums(index, sums_low[which], sums_high[which]);
+        } else {
             store(place, from_fixed(sums_low[which], sums_high[which], scale));
         }
     }

@@ -10,7 +10,7 @@
 
 layout(constant_id = 0) const uint GAUSSIAN = 0u;
 // 1: discs may be ellipses.
-layout(constant_id = 1) const uint ELLIPTIC = 0u;
+layout(constant_id = 2) const uint ELLIPTIC = 0u;
 
 // K(0), by which stored fluxes are multiplied already.
 float kernel_peak() {

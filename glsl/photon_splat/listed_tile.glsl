@@ -7,9 +7,14 @@
 
 const int NO_TILE = -1;
 
-int listed_tile(usamplerBuffer state, usamplerBuffer tiles) {
-    uint listed = gl_WorkGroupID.y * LISTED_A_ROW + gl_WorkGroupID.x;
-    return listed < texelFetch(state, int(STATE_LISTED)).x ? int(texelFetch(tiles, int(listed)).x) : NO_TILE;
+// `list`: STATE_TILES or STATE_CROWDED.
+int listed_tile(usamplerBuffer state, usamplerBuffer tiles, uint list, uint row) {
+    uint listed = row * LISTED_A_ROW + gl_WorkGroupID.x;
+    return listed < texelFetch(state, int(list + 3u)).x ? int(texelFetch(tiles, int(listed)).x) : NO_TILE;
+}
+
+int listed_tile(usamplerBuffer state, usamplerBuffer tiles, uint list) {
+    return listed_tile(state, tiles, list, gl_WorkGroupID.y);
 }
 
 ivec2 sample_of_tile(int tile, ivec2 size, int which) {

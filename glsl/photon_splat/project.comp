@@ -3,6 +3,7 @@
 #include "photons/records.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
+#include "photon_splat/kernel.glsl"
 #include "photon_splat/levels.glsl"
 #include "photon_splat/state.glsl"
 
@@ -67,25 +68,29 @@ float lattice_sum(Photon photon, float radius, float smaller, vec3 squeeze, Exte
     ivec2 last = ivec2(floor(extent.center + extent.radius - 0.5));
     vec2 corner = ndc_of_pixel(first * push.downscale + push.downscale / 2, push.image_size);
     vec3 row = corner.x * camera.right_scaled + corner.y * camera.down_scaled;
+    float inverse_radius = 1.0 / radius;
+    float area_factor = perspective ? 1.0 / abs(plane) : 1.0 / abs(along_normal);
     float sum = 0.0;
     for (int y = first.y; y <= last.y; ++y, row += y_step) {
         vec3 across = row;
         for (int x = first.x; x <= last.x; ++x, across += x_step) {
-            vec3 ray = camera.forward + across;
-            float z = plane / dot(ray, photon.normal);
-            vec3 point = ray * z;
-            float area = z * z * z / abs(plane);
-            if (!perspective) {
-                point = across + camera.forward * ((plane - dot(across, photon.normal)) / along_normal);
-                area = 1.0 / abs(along_normal);
-            }
-            vec3 from_center = (point - offset) / radius;
+            vec3 ray = perspective ? camera.forward + across : camera.forward;
+            vec3 start = perspective ? vec3(0.0) : across;
+            float z = (plane - dot(start, photon.normal)) / dot(ray, photon.normal);
+            float area = perspective ? z * z * z : 1.0;
+            vec3 from_center = start + ray * z - offset;
             float squeezed = dot(from_center, squeeze);
-            float squared = dot(from_center, from_center) + squeezed * squeezed;
+            float squared = dot(from_center, from_center) * inverse_radius * inverse_radius + squeezed * squeezed;
             sum += area > 0.0 ? kernel_shape(squared) * area : 0.0;
         }
     }
-    return sum * length(x_step) * length(y_step) * kernel_peak() / (radius * smaller);
+    return sum * area_factor * length(x_step) * length(y_step) * kernel_peak() * inverse_radius / smaller;
+}
+
+// Comparisons with what is no number are false.
+bool is_sound(Photon photon) {
+    return all(lessThan(abs(photon.position_rs), vec3(1e15))) && photon.radius < 1e15
+        && all(greaterThanEqual(photon.flux, vec3(0.0))) && all(lessThan(photon.flux, vec3(1e30)));
 }
 
 void main() {
@@ -108,9 +113,9 @@ void main() {
             float least = LEAST_SAMPLES * sample_across;
             radius = max(photon.radius, least / foreshortening(to_eye, cross(photon.normal, axis.xyz)));
             smaller = min(max(axis.w, least / foreshortening(to_eye, axis.xyz)), radius);
-            squeeze = axis.xyz * sqrt(max(radius * radius / (smaller * smaller) - 1.0, 0.0));
+            squeeze = axis.xyz * sqrt(max(1.0 / (smaller * smaller) - 1.0 / (radius * radius), 0.0));
         }
-        float height = radius * allowed_height(1.0 / radius, push.tolerance);
+        float height = allowed_height(radius, push.tolerance);
         Extent extent =
             disc_extent(camera, photon.position_rs, photon.normal, radius, height, push.image_size, push.downscale);
         vec3 irradiance = photon.flux * (kernel_peak() / (radius * smaller));
@@ -118,13 +123,10 @@ void main() {
         if (smaller * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
             irradiance /= clamp(lattice_sum(photon, radius, smaller, squeeze, extent), 0.5, 2.0);
         }
-        float peak = min(max3(irradiance), 1e30);
-        irradiance = clamp(irradiance, vec3(0.0), vec3(1e30));
-        // Comparisons with what is no number are false.
-        bool kept = peak > 0.0 && extent.radius.x > 0.0 && radius > 0.0 && extent.center.x == extent.center.x
-            && extent.center.y == extent.center.y;
+        irradiance = min(irradiance, vec3(1e30));
+        float peak = max3(irradiance);
         uvec2 place = uvec2(NO_CELL, 0u);
-        if (kept) {
+        if (is_sound(photon) && peak > 0.0 && extent.radius.x > 0.0) {
             float reach = max(extent.radius.x, extent.radius.y);
             int level = 0;
             while (level < push.level_count - 1 && reach > reach_of_level(level)) {
@@ -139,9 +141,9 @@ void main() {
             atomicOr(levels_of_group, 1u << level);
         }
         places[index] = place;
-        discs[3u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(1.0 / radius));
-        discs[3u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
         discs[3u * index + 2u] = uvec4(floatBitsToUint(squeeze), 0u);
+        discs[3u * index] = uvec4(floatBitsToUint(photon.position_rs), floatBitsToUint(radius));
+        discs[3u * index + 1u] = uvec4(floatBitsToUint(irradiance), pack_direction(photon.normal));
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && levels_of_group != 0u) {

@@ -21,10 +21,8 @@ layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     uint has_specular;
+    uint list;
 } push;
-
-// As in discs.frag.
-const int TERM_BITS = 30;
 
 void resolve(int tile, int which) {
     ivec2 size = lattice_size(push.image_size, push.downscale);
@@ -36,7 +34,7 @@ void resolve(int tile, int which) {
     int first = 2 * (TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which));
     uvec4 low = texelFetch(sums, first);
     uvec4 high = texelFetch(sums, first + 1);
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x), TERM_BITS);
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x));
     vec3 sum = from_fixed(low.xyz, high.xyz, scale);
     if (push.downscale == 1) {
         vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
@@ -46,7 +44,7 @@ void resolve(int tile, int which) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles);
+    int tile = listed_tile(state, tiles, push.list);
     if (tile != NO_TILE) {
         [[dont_unroll]] for (int which = 0; which < 4; ++which) {
             resolve(tile, which);

@@ -1,8 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "photons/records.glsl"
+#include "photon_splat/disc.glsl"
 
-// Copies one photon's disc (photon_splat/disc.glsl) to its place among those of its cell, in four lists that gather.comp reads without unpacking.
+// Copies one photon's disc (photon_splat/disc.glsl) to its place among those of its cell, in four lists that gather.comp reads without
+// unpacking: centre, and radius of a sphere around all that the disc may light; normal, and 1/h²; irradiance, and allowed height;
+// squeeze.
 
 layout(local_size_x = 64) in;
 
@@ -17,7 +20,7 @@ layout(set = 0, binding = 7) writeonly buffer SqueezeBlock { vec4 sorted_squeeze
 
 layout(push_constant, scalar) uniform Push {
     uint stage;
-    uint reserved;
+    float tolerance;
 } push;
 
 const uint NO_CELL = 0xFFFFFFFFu;
@@ -32,9 +35,11 @@ void main() {
         return;
     }
     uint target = texelFetch(cell_starts, int(place.x)).x + place.y;
+    vec4 center = uintBitsToFloat(texelFetch(discs, 3 * int(index)));
     uvec4 disc = texelFetch(discs, 3 * int(index) + 1);
-    sorted_centers[target] = uintBitsToFloat(texelFetch(discs, 3 * int(index)));
+    float height = allowed_height(center.w, push.tolerance);
+    sorted_centers[target] = vec4(center.xyz, length(vec2(center.w, height)));
+    sorted_normals[target] = vec4(unpack_direction(disc.w), 1.0 / (center.w * center.w));
     sorted_squeezes[target] = uintBitsToFloat(texelFetch(discs, 3 * int(index) + 2));
-    sorted_normals[target] = vec4(unpack_direction(disc.w), 0.0);
-    sorted_irradiances[target] = vec4(uintBitsToFloat(disc.xyz), 0.0);
+    sorted_irradiances[target] = vec4(uintBitsToFloat(disc.xyz), height);
 }

@@ -24,9 +24,9 @@ void main() {
     state[STATE_BLOCKS] = any_photon ? push.blocks.x : 0u;
     state[STATE_BLOCKS + 1u] = push.blocks.y;
     state[STATE_BLOCKS + 2u] = 1u;
-    state[STATE_TILES] = 0u;
-    state[STATE_TILES + 1u] = 0u;
+    for (uint word = STATE_TILES; word <= STATE_LEVELS; ++word) {
+        state[word] = 0u;
+    }
     state[STATE_TILES + 2u] = 1u;
-    state[STATE_LISTED] = 0u;
-    state[STATE_LEVELS] = 0u;
+    state[STATE_CROWDED + 2u] = 1u;
 }

@@ -133,7 +133,8 @@ impl Stage {
             let padded: Vec<[u32; 4]> = records.iter().copied().chain([[0; 4]; 3]).collect();
             let capacity = count + 1;
             let hits = graph.buffer("hits", 4 * capacity as usize);
-            let traced = PhotonRays { rays: graph.upload("rays", &padded, Dependence::NONE), hits, stage: 0, capacity };
+            let rays_of_test = graph.upload("rays", &padded, Dependence::NONE);
+            let traced = PhotonRays { rays: rays_of_test, hits, ..PhotonRays::declare(&mut graph, 0, capacity) };
             match settings.trace {
                 PhotonTracing::Lines => lines::trace(&mut graph, &lists, &traced, counts),
                 _ => drop(march::trace(&mut graph, &lists, &traced, counts)),

@@ -125,6 +125,7 @@ impl OnDevice<'_> {
             data,
             geometry: &geometry,
             facts: &facts,
+            camera: &camera,
             set,
             lights: &lights,
             traced: Some(traced),

@@ -4,25 +4,15 @@
 use ash::vk;
 
 use super::records::{DRAW_WORD, STAGE_WORDS};
-use super::splat::{RECORDS, Splat, TILES_WORD};
+use super::splat::{RECORDS, Splat, TileList};
 use crate::graph::Graph;
-use crate::shaders::photon_splat::{Clear, ClearPush, Discs, DiscsPush, Resolve, ResolvePush};
+use crate::shaders::photon_splat::{Discs, DiscsPush};
 use crate::vulkan::RasterState;
 
 /// Declares the passes that fill `splat.result`.
 pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (buffer, landed) = (splat.buffer, &splat.landed);
-    // Two texels a sample: the low words of three sums, the high ones.
-    let sums = graph.buffer::<u32>("photons.sums", 8 * 256 * splat.grid.tile_count());
-
-    let pass = Clear {
-        state: splat.state_texels(),
-        tiles: splat.tile_texels(),
-        sums: sums.write(),
-        push: ClearPush { reserved: 0 },
-    };
-    graph.pass("caustics/photons/clear-sums", pass).threads_indirect(splat.state, TILES_WORD);
-
+    let sums = splat.cleared_sums(graph, TileList::Ordinary);
     let pass = Discs {
         camera: buffer.camera.clone(),
         discs: splat.discs.texels(RECORDS),
@@ -41,17 +31,5 @@ pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         STAGE_WORDS * landed.stage + DRAW_WORD,
         1,
     );
-
-    let (specular, has_specular) = buffer.specular();
-    let pass = Resolve {
-        surface: buffer.surface.sampled(),
-        specular: specular.sampled(),
-        state: splat.state_texels(),
-        tiles: splat.tile_texels(),
-        tile_peaks: splat.tile_peak_texels(),
-        sums: sums.texels(RECORDS),
-        result: splat.result.modify(),
-        push: ResolvePush { image_size: splat.image_size, downscale: splat.downscale, has_specular },
-    };
-    graph.pass("caustics/photons/resolve", pass).threads_indirect(splat.state, TILES_WORD);
+    splat.resolve(graph, TileList::Ordinary, sums);
 }

@@ -10,10 +10,10 @@ mod discs;
 mod emit;
 mod land;
 mod layers;
-mod lines;
+pub(crate) mod lines;
 mod list_views;
-mod lists;
-mod march;
+pub(crate) mod lists;
+pub(crate) mod march;
 pub(crate) mod records;
 pub(crate) mod splat;
 mod tiles;
@@ -83,8 +83,11 @@ pub(crate) struct TracedPhotons {
 pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> TracedPhotons {
     let settings = inputs.settings;
     let stages = settings.bounces.max(1) as usize;
-    let capacity =
-        settings.max.min(LARGEST_BUFFER / ARRIVAL_BYTES).min(LARGEST_BUFFER / DISC_BYTES / settings.bounces.max(1)).max(1);
+    let capacity = settings
+        .max
+        .min(LARGEST_BUFFER / ARRIVAL_BYTES)
+        .min(LARGEST_BUFFER / DISC_BYTES / settings.bounces.max(1))
+        .max(1);
     let views = views::specular_views(graph, inputs);
     let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
     let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));

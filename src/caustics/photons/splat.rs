@@ -22,20 +22,44 @@ use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::renderer::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
-use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
+use crate::shaders::photon_splat::{
+    Clear, ClearPush, Project, ProjectPush, Resolve, ResolvePush, Start, StartPush, Touch, TouchPush,
+};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
-pub(super) const STATE_WORDS: usize = 11;
+const STATE_WORDS: usize = 18;
 pub(super) const ROWS_WORD: usize = 0;
 const BLOCKS_WORD: usize = 3;
-pub(super) const TILES_WORD: usize = 6;
-pub(super) const LISTED_WORD: usize = 9;
+pub(super) const PARTS_WORD: usize = 14;
+
+/// A list of tiles that photons may reach, by where its four words are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum TileList {
+    Ordinary = 6,
+    Crowded = 10,
+}
+
+impl TileList {
+    pub(super) fn word(self) -> usize {
+        self as usize
+    }
+
+    /// The name of a pass over the list.
+    pub(super) fn pass_name(self, pass: &str) -> String {
+        let suffix = if self == TileList::Crowded { "-crowded" } else { "" };
+        format!("caustics/photons/{pass}{suffix}")
+    }
+}
 
 /// What a photon may be off its surface, over the scene's length: its hit may come from lists of limited resolution.
 const TOLERANCE: f64 = 1e-3;
 
 /// Samples to a side of a tile.
 const TILE_SIDE: u32 = 16;
+/// Words of the sums of a tile's samples.
+const TILE_SUM_WORDS: usize = 8 * 256;
+/// Photons that a group of `tiles` takes at most: a driver may end loops after 65535 rounds, of which a photon takes up to 1⅛.
+const PART_PHOTONS: u32 = 32768;
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
 pub(super) const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -65,8 +89,11 @@ pub(super) struct Splat<'a> {
     pub(super) cell_counts: BufferRef<u32>,
     cell_peaks: BufferRef<u32>,
     tile_list: BufferRef<u32>,
+    crowded: BufferRef<u32>,
     tile_peaks: BufferRef<u32>,
     pub(super) state: BufferRef<u32>,
+    /// Whether a tile may have more photons than a group takes.
+    pub(super) may_crowd: bool,
     /// What the samples' results are written to: the slot, or irradiance.
     pub(super) result: ImageRef,
 }
@@ -122,7 +149,7 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         graph.clear_image("caustics/photons/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
         irradiance
     };
-    let (cells, tile_count) = (grid.cell_count as usize, grid.tile_count());
+    let (cells, tile_count, capacity) = (grid.cell_count as usize, grid.tile_count(), landed.capacity.max(1) as usize);
     let shared = Splat {
         buffer,
         landed: *landed,
@@ -132,13 +159,15 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         image_size: buffer.size.map(u32::cast_signed),
         downscale: downscale.cast_signed(),
         grid,
-        discs: graph.buffer("photons.discs", 3 * landed.capacity as usize),
-        places: graph.buffer("photons.places", landed.capacity as usize),
+        discs: graph.buffer("photons.discs", 3 * capacity),
+        places: graph.buffer("photons.places", capacity),
         cell_counts: graph.buffer("photons.cell_counts", cells),
         cell_peaks: graph.buffer("photons.cell_peaks", cells),
         tile_list: graph.buffer("photons.tiles", tile_count),
+        crowded: graph.buffer("photons.crowded", tile_count),
         tile_peaks: graph.buffer("photons.tile_peaks", tile_count),
         state: graph.buffer("photons.splat_state", STATE_WORDS),
+        may_crowd: settings.splat != PhotonSplatting::Discs && landed.capacity > PART_PHOTONS,
         result,
     };
     shared.declare_start(graph);
@@ -196,18 +225,21 @@ impl Splat<'_> {
         let pass = Touch {
             levels: grid.levels.texels(RECORDS),
             cell_peaks: self.cell_peaks.texels(WORDS),
+            cell_counts: self.cell_counts.texels(WORDS),
             tile_peaks: self.tile_peaks.write(),
             tiles: self.tile_list.write(),
+            crowded: self.crowded.write(),
             state: self.state.read_write(),
             push: TouchPush {
                 tile_count: grid.tiles().map(u32::cast_signed),
                 level_count: grid.level_count,
-                reserved: 0,
+                ordinary: if self.may_crowd { PART_PHOTONS } else { u32::MAX },
             },
         };
         graph
             .pass("caustics/photons/touch", pass)
-            .count("tiles", self.state, LISTED_WORD)
+            .count("tiles", self.state, TileList::Ordinary.word() + 3)
+            .count("crowded tiles", self.state, TileList::Crowded.word() + 3)
             .threads_indirect(self.state, BLOCKS_WORD);
     }
 
@@ -215,8 +247,50 @@ impl Splat<'_> {
         self.state.texels(WORDS)
     }
 
-    pub(super) fn tile_texels(&self) -> TexelBuffer {
-        self.tile_list.texels(WORDS)
+    /// The lists of tiles that the chosen way makes.
+    pub(super) fn lists(&self) -> &'static [TileList] {
+        if self.may_crowd { &[TileList::Ordinary, TileList::Crowded] } else { &[TileList::Ordinary] }
+    }
+
+    pub(super) fn tile_texels(&self, list: TileList) -> TexelBuffer {
+        match list {
+            TileList::Ordinary => self.tile_list.texels(WORDS),
+            TileList::Crowded => self.crowded.texels(WORDS),
+        }
+    }
+
+    /// Sums of all tiles' samples, zero in those of `list`.
+    pub(super) fn cleared_sums(&self, graph: &mut Graph<'_>, list: TileList) -> BufferRef<u32> {
+        let sums = graph.buffer("photons.sums", TILE_SUM_WORDS * self.grid.tile_count());
+        let pass = Clear {
+            state: self.state_texels(),
+            tiles: self.tile_texels(list),
+            sums: sums.write(),
+            push: ClearPush { list: list.word() as u32 },
+        };
+        graph.pass(&list.pass_name("clear-sums"), pass).threads_indirect(self.state, list.word());
+        sums
+    }
+
+    /// Writes the results of the tiles of `list` from their sums.
+    pub(super) fn resolve(&self, graph: &mut Graph<'_>, list: TileList, sums: BufferRef<u32>) {
+        let (specular, has_specular) = self.buffer.specular();
+        let pass = Resolve {
+            surface: self.buffer.surface.sampled(),
+            specular: specular.sampled(),
+            state: self.state_texels(),
+            tiles: self.tile_texels(list),
+            tile_peaks: self.tile_peak_texels(),
+            sums: sums.texels(RECORDS),
+            result: self.result.modify(),
+            push: ResolvePush {
+                image_size: self.image_size,
+                downscale: self.downscale,
+                has_specular,
+                list: list.word() as u32,
+            },
+        };
+        graph.pass(&list.pass_name("resolve"), pass).threads_indirect(self.state, list.word());
     }
 
     pub(super) fn tile_peak_texels(&self) -> TexelBuffer {

@@ -4,8 +4,9 @@
 use ash::vk;
 
 use super::records::{DISPATCH_WORD, STAGE_WORDS};
-use super::splat::{RECORDS, ROWS_WORD, Splat, TILES_WORD};
+use super::splat::{PARTS_WORD, RECORDS, ROWS_WORD, Splat, TileList};
 use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
 use crate::shaders::photon_splat::{Gather, GatherPush, Scan, ScanPush, Scatter, ScatterPush};
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
@@ -16,7 +17,8 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (grid, landed) = (&splat.grid, &splat.landed);
     let cell_starts = graph.buffer::<u32>("photons.cell_starts", grid.cell_count as usize);
     let sorted_count = graph.buffer::<u32>("photons.sorted_count", 1);
-    let mut sorted = |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity as usize);
+    let mut sorted =
+        |what: &str| graph.buffer::<[f32; 4]>(&format!("photons.sorted_{what}"), landed.capacity.max(1) as usize);
     let (centers, normals, irradiances) = (sorted("centers"), sorted("normals"), sorted("irradiances"));
     let squeezes = sorted("squeezes");
 
@@ -39,38 +41,48 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_normals: normals.write(),
         sorted_irradiances: irradiances.write(),
         sorted_squeezes: squeezes.write(),
-        push: ScatterPush { stage: landed.stage as u32, reserved: 0 },
+        push: ScatterPush { stage: landed.stage as u32, tolerance: splat.tolerance },
     };
     graph
         .pass("caustics/photons/scatter", pass)
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 
-    let (specular, has_specular) = splat.buffer.specular();
-    let pass = Gather {
-        camera: splat.buffer.camera.clone(),
-        depth: splat.buffer.depth.sampled(),
-        surface: splat.buffer.surface.sampled(),
-        specular: specular.sampled(),
-        state: splat.state_texels(),
-        tiles: splat.tile_texels(),
-        tile_peaks: splat.tile_peak_texels(),
-        levels: grid.levels.texels(RECORDS),
-        cell_starts: cell_starts.texels(WORDS),
-        sorted_centers: centers.texels(FLOATS),
-        sorted_normals: normals.texels(FLOATS),
-        sorted_irradiances: irradiances.texels(FLOATS),
-        sorted_squeezes: squeezes.texels(FLOATS),
-        result: splat.result.modify(),
-        gaussian: splat.gaussian,
-        elliptic: splat.elliptic,
-        push: GatherPush {
-            image_size: splat.image_size,
-            downscale: splat.downscale,
-            level_count: grid.level_count,
-            has_specular,
-            tolerance: splat.tolerance,
-        },
+    let gather = |result_sums: BufferRef<u32>, list: TileList| {
+        let (specular, has_specular) = splat.buffer.specular();
+        Gather {
+            camera: splat.buffer.camera.clone(),
+            depth: splat.buffer.depth.sampled(),
+            surface: splat.buffer.surface.sampled(),
+            specular: specular.sampled(),
+            state: splat.state_texels(),
+            tiles: splat.tile_texels(list),
+            tile_peaks: splat.tile_peak_texels(),
+            levels: grid.levels.texels(RECORDS),
+            cell_starts: cell_starts.texels(WORDS),
+            sorted_centers: centers.texels(FLOATS),
+            sorted_normals: normals.texels(FLOATS),
+            sorted_irradiances: irradiances.texels(FLOATS),
+            sorted_squeezes: squeezes.texels(FLOATS),
+            result: splat.result.modify(),
+            sums: result_sums.read_write(),
+            gaussian: splat.gaussian,
+            elliptic: splat.elliptic,
+            crowded: u32::from(list == TileList::Crowded),
+            push: GatherPush {
+                image_size: splat.image_size,
+                downscale: splat.downscale,
+                level_count: grid.level_count,
+                has_specular,
+            },
+        }
     };
-    graph.pass("caustics/photons/gather", pass).threads_indirect(splat.state, TILES_WORD);
+    let list = TileList::Ordinary;
+    graph.pass(&list.pass_name("gather"), gather(sorted_count, list)).threads_indirect(splat.state, list.word());
+    if splat.may_crowd {
+        let list = TileList::Crowded;
+        let sums = splat.cleared_sums(graph, list);
+        graph.pass(&list.pass_name("gather"), gather(sums, list)).threads_indirect(splat.state, PARTS_WORD);
+        splat.resolve(graph, list, sums);
+    }
 }
