@@ -2,8 +2,10 @@
 //
 //   arrivals   3 texels   as a ray of photons/records.glsl whose origin is the point that it reached, and `travelled` the way so far
 //   surfaces   2 texels   shading normal | geometric normal | √f0 | √transmission           (photons/surface_texel.glsl)
-//                         f90, roughness | relative index beyond the surface, 1: a thin wall | gap | unused
+//                         f90, roughness | relative index beyond the surface, 1: a thin wall | gap | bent normal
 //
+// Bent normal: the shading normal where the photon sits in its texel, which says where it goes; what it carries follows from the shading normal
+// of the whole texel, so that the flux is right.
 // Gap: metres that a ray starts away from the surface, so that rounding does not let it meet that again.
 #ifndef PHOTONS_ARRIVALS
 #define PHOTONS_ARRIVALS

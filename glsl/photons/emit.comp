@@ -101,13 +101,15 @@ vec3 position_on_plane(LightView view, CellPoint point, vec2 step, vec3 normal) 
     return position_of_texel(view, tangent, depth_of_plane(view, point.tangent, tangent, point.depth, normal));
 }
 
-// The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface.
+// The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface, or where the surface is of flat
+// facets: the neighbour's shading normal is then its triangle's.
 vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
     if (texelFetch(specular_layer, texel, 0).y != material || texelFetch(mask, texel, 0).x <= 0.0) {
         return own;
     }
-    vec3 normal = unpack_direction(texelFetch(specular_surface, texel, 0).x);
-    return dot(normal, own) > 0.7 ? normal : own;
+    uvec2 normals = texelFetch(specular_surface, texel, 0).xy;
+    vec3 normal = unpack_direction(normals.x);
+    return normals.x != normals.y && dot(normal, own) > 0.7 ? normal : own;
 }
 
 // The change of the shading normal from one texel to the next along `step`, from those on both sides that are of the same surface.
@@ -196,7 +198,6 @@ void main() {
     arrival_beams[first + 2u] = beam[2];
     arrival_beams[first + 3u] = vec4(normals[0], normals[1].x);
     arrival_beams[first + 4u] = vec4(normals[1].yz, 0.0, 0.0);
-    surface.x = pack_direction(normalize(bent));
     surfaces[2u * photon] = surface;
-    surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), 0u);
+    surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), pack_direction(normalize(bent)));
 }

@@ -136,6 +136,6 @@ void land(bool met, Landing landing, MaterialPoint point) {
             pack_direction(landing.shading_normal), pack_direction(landing.normal), pack_root_color(lobes.f0), pack_root_color(transmission));
         surfaces[2u * place + 1u] = uvec4(
             packUnorm2x16(vec2(lobes.f90, lobes.roughness)), floatBitsToUint(relative_ior),
-            floatBitsToUint(gap_at(photon.origin_rs, push.radius)), 0u);
+            floatBitsToUint(gap_at(photon.origin_rs, push.radius)), pack_direction(landing.shading_normal));
     }
 }

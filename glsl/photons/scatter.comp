@@ -45,11 +45,11 @@ void note_lobe(inout PhotonRay photon, float alpha) {
     photon.bits = (photon.bits & 0xFFFFu) | packHalf2x16(vec2(max(before, alpha), 0.0)) << 16;
 }
 
-// From the drawn direction towards the middle of its lobe, as far as the disc stands for the lobe.
-vec3 towards_middle(vec3 drawn, vec3 viewer, float relative_ior, float alpha) {
-    vec3 middle = vec3(-viewer.xy, drawn.z < 0.0 ? -viewer.z : viewer.z);
-    if (drawn.z < 0.0 && relative_ior != 1.0) {
-        middle = refract(-viewer, vec3(0.0, 0.0, 1.0), 1.0 / relative_ior);
+// From the drawn direction towards the middle of its lobe about `normal`, as far as the disc stands for the lobe. `below`: it is transmitted.
+vec3 towards_middle(vec3 drawn, vec3 arriving, vec3 normal, bool below, float relative_ior, float alpha) {
+    vec3 middle = reflect(arriving, normal);
+    if (below) {
+        middle = relative_ior == 1.0 ? arriving : refract(arriving, normal, 1.0 / relative_ior);
     }
     float share = dot(middle, middle) > 0.5 ? lobe_in_disc(alpha) : 0.0;
     return normalize(mix(drawn, middle, share));
@@ -84,9 +84,6 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out
     viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
     vec4 random = photon_random(photon.seed, push.stage + 1u);
     LobeSample drawn = sample_lobes(matter, viewer, random.z, random.xy);
-    if (push.beams_decide != 0u && drawn.density > 0.0) {
-        drawn.direction = towards_middle(drawn.direction, viewer, matter.relative_ior, matter.alpha);
-    }
     vec3 direction = to_world(frame, drawn.direction);
     float side = dot(geometric_normal, direction);
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
@@ -108,7 +105,13 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out
     if (side < 0.0 && matter.relative_ior != 1.0) {
         photon.bits ^= PHOTON_INSIDE;
     }
-    beam = scattered_beam(index, photon.direction, frame.normal, drawn.direction.z < 0.0, matter.relative_ior);
+    bool below = drawn.direction.z < 0.0;
+    beam = scattered_beam(index, photon.direction, frame.normal, below, matter.relative_ior);
+    if (push.beams_decide != 0u) {
+        vec3 bent = unpack_direction(layer.w);
+        vec3 middle = towards_middle(direction, photon.direction, bent, below, matter.relative_ior, matter.alpha);
+        direction = dot(geometric_normal, middle) * side > 0.0 ? middle : direction;
+    }
     note_lobe(photon, matter.alpha);
     photon.origin_rs += (side > 0.0 ? geometric_normal : -geometric_normal) * uintBitsToFloat(layer.z);
     photon.direction = normalize(direction);

@@ -178,7 +178,8 @@ fn discs_have_the_radius_of_their_way() {
     let corners = [[-0.5, 0.5, -0.5], [-0.5, 0.5, 0.5], [0.5, 0.5, 0.5], [0.5, 0.5, -0.5]];
     place(&mut scene, vec![quad(corners, material)], DAffine3::from_scale(DVec3::new(1.0, 1.0, 2.0)));
     add_light(&mut scene, LightKind::Point, DVec3::new(0.0, 2.5, 0.0), DVec3::NEG_Y, INTENSITY);
-    let found = run(&session, &scene, &[("photons.bounces", "1"), ("photons.radius", "0.25")]);
+    let found =
+        run(&session, &scene, &[("photons.bounces", "1"), ("photons.footprint", "way"), ("photons.radius", "0.25")]);
     let area: f64 = 4.0 + 2.0;
     let radius = DVec3::new(1.0, 0.25, 1.0).length();
     let mut seen = 0;
