@@ -10,7 +10,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform sampler2D mask;
+layout(set = 0, binding = 0, r32f) readonly uniform image2D mask;
 layout(set = 0, binding = 1) uniform usamplerBuffer levels;
 layout(set = 0, binding = 2) uniform usamplerBuffer tiles;  // r32ui: column and row, 16 bits each, of the views' squares of 16x16 texels
 layout(set = 0, binding = 3) buffer PyramidBlock { uint pyramid[]; };
@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform Push {
 
 float flux_of_block(Level level, ivec2 block) {
     if (push.level == 0u) {
-        return texelFetch(mask, block, 0).x;
+        return imageLoad(mask, block).x;
     }
     return holds(level, block) ? uintBitsToFloat(pyramid[place_of_block(level, block)]) : 0.0;
 }

@@ -64,7 +64,10 @@ fn tiles_of(set: &LightSet) -> Vec<u32> {
         let [column, row] = tile.origin.map(|at| at.cast_unsigned() / TILE);
         row << 16 | column
     };
-    set.atlas.tiles.iter().map(place).collect()
+    let mut places: Vec<u32> = set.atlas.tiles.iter().map(place).collect();
+    // A buffer holds something; nothing of an atlas without tiles is read.
+    places.resize(places.len().max(1), 0);
+    places
 }
 
 /// Declares the passes; at most `most` photons in `stages` stages of rays.
@@ -86,9 +89,9 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
     let tile_list = graph.upload("photons.tiles", &tiles, Dependence::LIGHTS).texels(WORDS);
     for level in (0..level_count.saturating_sub(1).max(1)).step_by(LEVELS_OF_PASS) {
         let [columns, rows] = [0, 1].map(|axis| table[level][axis].div_ceil(4));
-        let count = if level == 0 { 16 * tiles.len() as u32 } else { columns * rows };
+        let count = if level == 0 { 16 * set.atlas.tiles.len() as u32 } else { columns * rows };
         let pass = Pyramid {
-            mask: views.mask.sampled(),
+            mask: views.mask.read(),
             levels: made.levels.clone(),
             tiles: tile_list.clone(),
             pyramid: made.pyramid.read_write(),
