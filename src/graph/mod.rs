@@ -143,7 +143,7 @@ impl<'s> Graph<'s> {
         BufferRef { id, count: elements.len(), element: PhantomData }
     }
 
-    /// A buffer of the scene, whose content `key` names.
+    /// A buffer of the scene, whose content `key` names. Several pieces may import the same one.
     pub(crate) fn import_buffer<T>(
         &mut self,
         name: &str,
@@ -152,7 +152,12 @@ impl<'s> Graph<'s> {
         dependence: Dependence,
     ) -> BufferRef<T> {
         let count = usize::try_from(buffer.size).unwrap_or(0) / size_of::<T>().max(1);
-        let id = self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence));
+        let is_same = |resource: &Resource| {
+            resource.name == name && matches!(&resource.body, Body::ExternalBuffer(known) if Arc::ptr_eq(known, buffer))
+        };
+        let known = self.resources.iter().position(is_same);
+        let id =
+            known.unwrap_or_else(|| self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence)));
         BufferRef { id, count, element: PhantomData }
     }
 
