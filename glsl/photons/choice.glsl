@@ -14,6 +14,5 @@ const uint CHOICE_OF_BLOCK = 4u;
 const uint CHOICE_PHOTONS = 5u;
 const uint CHOICE_EMIT = 6u;
 const uint CHOICE_LISTED = 9u;
-const uint CHOICE_WORDS = 10u;
 
 #endif

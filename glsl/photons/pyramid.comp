@@ -1,77 +1,79 @@
 #version 460
 #include "lib/prelude.glsl"
 
-// One group sums 16x16 blocks of one level of the mask's pyramid into the four levels above it, W, and counts on each the blocks that are
-// not empty (Quyen 2014, section 3.3.1.1, whose pyramid averages ones). Every sum is of four in a fixed order: the same bits every time.
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+
+// One invocation sums 4x4 blocks of one level of the mask's pyramid into the two levels above it, W, and counts on each the blocks that are
+// not empty (Quyen 2014, section 3.3.1.1, whose pyramid averages ones). The mask itself is read where it belongs to a view alone. What is
+// empty was so before. Every sum is of four in a fixed order: the same bits every time.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform sampler2D mask;
+layout(set = 0, binding = 0, r32f) readonly uniform image2D mask;
 layout(set = 0, binding = 1) uniform usamplerBuffer levels;
-layout(set = 0, binding = 2) buffer PyramidBlock { uint pyramid[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer tiles;  // r32ui: column and row, 16 bits each, of the views' squares of 16x16 texels
+layout(set = 0, binding = 3) buffer PyramidBlock { uint pyramid[]; };
 
-layout(push_constant, scalar) uniform Push { uint level; } push;
+layout(push_constant, scalar) uniform Push {
+    uint level;
+    uint columns;  // invocations in a row, above level 0
+    uint count;    // invocations
+} push;
 
 #include "photons/pyramid.glsl"
 
-shared float sums[64];
-shared uint tallies[5];
-
 float flux_of_block(Level level, ivec2 block) {
-    if (!holds(level, block)) {
-        return 0.0;
+    if (push.level == 0u) {
+        return imageLoad(mask, block).x;
     }
-    return push.level == 0u ? texelFetch(mask, block, 0).x : uintBitsToFloat(pyramid[place_of_block(level, block)]);
+    return holds(level, block) ? uintBitsToFloat(pyramid[place_of_block(level, block)]) : 0.0;
+}
+
+// Column and row of the 4x4 blocks.
+ivec2 place_of_invocation(uint index) {
+    if (push.level > 0u) {
+        return ivec2(index % push.columns, index / push.columns);
+    }
+    uint tile = texelFetch(tiles, int(index >> 4)).x;
+    return 4 * ivec2(tile & 0xFFFFu, tile >> 16) + ivec2(index & 3u, index >> 2 & 3u);
 }
 
 void main() {
-    uint self = gl_LocalInvocationIndex;
-    ivec2 place = ivec2(self & 7u, self >> 3);
-    ivec2 group = ivec2(gl_WorkGroupID.xy);
-    if (self < 5u) {
-        tallies[self] = 0u;
-    }
-    barrier();
-
-    Level source = load_level(push.level);
-    ivec2 first = 16 * group + 2 * place;
-    vec4 quad = vec4(
-        flux_of_block(source, first), flux_of_block(source, first + ivec2(1, 0)),
-        flux_of_block(source, first + ivec2(0, 1)), flux_of_block(source, first + ivec2(1, 1)));
-    float sum = (quad.x + quad.y) + (quad.z + quad.w);
-    if (sum > 0.0) {
-        uint taken = uint(quad.x > 0.0) + uint(quad.y > 0.0) + uint(quad.z > 0.0) + uint(quad.w > 0.0);
-        atomicAdd(tallies[0], taken);
-    }
-    barrier();
-    if (tallies[0] == 0u) {
-        // The pyramid was emptied before.
-        return;
-    }
-    [[dont_unroll]] for (uint step = 1u; step <= 4u; ++step) {
-        // The sums of this level lie in the upper left corner of the group's square.
-        int side = 16 >> step;
-        bool takes_part = all(lessThan(place, ivec2(side)));
-        if (step > 1u && takes_part) {
-            int corner = 16 * place.y + 2 * place.x;
-            sum = (sums[corner] + sums[corner + 1]) + (sums[corner + 8] + sums[corner + 9]);
-        }
-        barrier();
-        Level target = load_level(push.level + step);
-        ivec2 block = side * group + place;
-        if (takes_part) {
-            sums[8 * place.y + place.x] = sum;
+    uint index = gl_GlobalInvocationID.x;
+    uvec3 taken = uvec3(0u);
+    if (index < push.count) {
+        Level source = load_level(push.level);
+        Level middle = load_level(push.level + 1u);
+        Level top = load_level(push.level + 2u);
+        ivec2 place = place_of_invocation(index);
+        vec4 sums = vec4(0.0);
+        [[dont_unroll]] for (int part = 0; part < 4; ++part) {
+            ivec2 block = 2 * place + ivec2(part & 1, part >> 1);
+            ivec2 first = 2 * block;
+            vec4 quad = vec4(
+                flux_of_block(source, first), flux_of_block(source, first + ivec2(1, 0)),
+                flux_of_block(source, first + ivec2(0, 1)), flux_of_block(source, first + ivec2(1, 1)));
+            float sum = (quad.x + quad.y) + (quad.z + quad.w);
             if (sum > 0.0) {
-                atomicAdd(tallies[step], 1u);
+                taken.xy += uvec2(uint(quad.x > 0.0) + uint(quad.y > 0.0) + uint(quad.z > 0.0) + uint(quad.w > 0.0), 1u);
+                pyramid[place_of_block(middle, block)] = floatBitsToUint(sum);
             }
-            if (holds(target, block)) {
-                pyramid[place_of_block(target, block)] = floatBitsToUint(sum);
-            }
+            sums[part] = sum;
         }
-        barrier();
+        float sum = (sums.x + sums.y) + (sums.z + sums.w);
+        if (sum > 0.0 && holds(top, place)) {
+            taken.z = 1u;
+            pyramid[place_of_block(top, place)] = floatBitsToUint(sum);
+        }
     }
     // The lowest level was counted by the pass below, as its highest.
-    if (self < 5u && (self > 0u || push.level == 0u) && tallies[self] > 0u) {
-        atomicAdd(pyramid[push.level + self], tallies[self]);
+    uvec3 counts = subgroupAdd(taken);
+    if (subgroupElect() && counts.y > 0u) {
+        if (push.level == 0u) {
+            atomicAdd(pyramid[0], counts.x);
+        }
+        atomicAdd(pyramid[push.level + 1u], counts.y);
+        atomicAdd(pyramid[push.level + 2u], counts.z);
     }
 }

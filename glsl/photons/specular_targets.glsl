@@ -1,9 +1,10 @@
 // What a light view gets on top of its depth where a surface reflects or transmits specularly: the surface (photons/surface_texel.glsl), and
-// the mask: the flux that the texel receives times the share that its specular lobes may send on, in W. The share is what photons are drawn by,
-// so that any positive one is right; of light lost in a closed body on its way to the texel nothing is received.
+// the mask: the flux that the texel receives times the share that its specular lobes may send on, in W. That is what photons are drawn by, so
+// that it may be a little off: Δω is step²·cos³ here, at most 10⁻⁴ off at 128 texels a side. Of light that a closed body takes on its way
+// to the texel nothing is received.
 
 #include "lib/brdf.glsl"
-#include "light_views/flux.glsl"
+#include "lib/lights.glsl"
 #include "photons/medium.glsl"
 #include "photons/surface_texel.glsl"
 
@@ -24,10 +25,17 @@ void write_specular_texel(uint material_index, Material material, MaterialPoint 
     LightView view = load_view(views, push.view_index);
     vec2 tangent = tangent_of_texel(view, gl_FragCoord.xy);
     vec3 ray = ray_of_tangent(view, tangent);
-    vec3 incident = incident_flux(load_light(lights, view.light), view, gl_FragCoord.xy, gl_FragCoord.z);
-    incident *= transmittance_behind(material, front, length(ray) * linear_depth(view, gl_FragCoord.z));
-    float cosine = abs(dot(normal, ray)) / length(ray);
+    float stretch = length(ray);
+    float distance = stretch * linear_depth(view, gl_FragCoord.z);
+    bool lit = all(greaterThanEqual(tangent, view.lit_low)) && all(lessThan(tangent, view.lit_high));
+    Light light = load_light(lights, view.light);
+    vec3 incident = radiant_intensity(light, ray / stretch) * (view.tangent_step * view.tangent_step);
+    if (!is_orthographic(view)) {
+        incident *= range_window(distance, light.range) / (stretch * stretch * stretch);
+    }
+    incident *= transmittance_behind(material, front, distance);
+    float cosine = abs(dot(normal, ray)) / stretch;
     vec3 mean = lobes.f0 + (vec3(lobes.f90) - lobes.f0) / 21.0;
     float share = max3(max(mean, schlick_fresnel(lobes.f0, lobes.f90, cosine))) + max3(transmission);
-    mask = max3(incident) * clamp(share, 0.0, 1.0);
+    mask = lit ? max3(incident) * clamp(share, 0.0, 1.0) : 0.0;
 }

@@ -6,9 +6,9 @@ use glam::{DAffine3, DVec3};
 
 use super::path_probe::{sphere, turned};
 use super::photons_probe::{passes_of_second_frame, photon_settings, photons, total};
-use super::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad};
+use super::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, request};
 use super::session::Session;
-use crate::renderer::{Settings, Timing};
+use crate::renderer::{DirectMethod, Methods, Settings, Slot, Timing};
 use crate::scene::{Alpha, LightKind, Material, Scene, Texture, TextureRef, Wrap};
 
 fn mirror() -> Material {
@@ -237,4 +237,16 @@ fn checkers() -> Texture {
         nearest: true,
         srgb: true,
     }
+}
+
+/// Rays of direct light and photons go through the same hierarchy.
+#[test]
+fn photons_share_the_hierarchy_with_direct_light() {
+    let session = Session::open();
+    let scene = builtin("ring");
+    let settings = photon_settings(&[("photons.max", "500"), ("lights.resolution", "64")]);
+    let settings = Settings { methods: Methods { direct: DirectMethod::Traced, ..settings.methods }, ..settings };
+    let camera = scene.camera_view(None).expect("a camera");
+    let frame = session.render(&scene, &settings, &request([16, 16], camera, &[Slot::Direct, Slot::Caustics]));
+    assert!(frame.slots[&Slot::Direct].pixels.iter().any(|pixel| pixel[0] > 0.0));
 }

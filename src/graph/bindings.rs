@@ -45,7 +45,6 @@ impl ImageRef {
         SampledImage(self.access(ImageUse::Sampled(sampler)))
     }
 
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn read(self) -> ReadImage {
         ReadImage(self.access(ImageUse::StorageRead))
     }

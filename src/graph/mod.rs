@@ -179,7 +179,7 @@ impl<'s> Graph<'s> {
         BufferRef { id, count: elements.len(), element: PhantomData }
     }
 
-    /// A buffer of the scene, whose content `key` names. Whoever imports it again gets the same one.
+    /// A buffer of the scene, whose content `key` names. Several pieces may import the same one.
     pub(crate) fn import_buffer<T>(
         &mut self,
         name: &str,
@@ -188,12 +188,12 @@ impl<'s> Graph<'s> {
         dependence: Dependence,
     ) -> BufferRef<T> {
         let count = usize::try_from(buffer.size).unwrap_or(0) / size_of::<T>().max(1);
-        let is_it =
-            |resource: &Resource| matches!(&resource.body, Body::ExternalBuffer(known) if Arc::ptr_eq(known, buffer));
-        if let Some(id) = self.resources.iter().position(|resource| resource.name == name && is_it(resource)) {
-            return BufferRef { id, count, element: PhantomData };
-        }
-        let id = self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence));
+        let is_same = |resource: &Resource| {
+            resource.name == name && matches!(&resource.body, Body::ExternalBuffer(known) if Arc::ptr_eq(known, buffer))
+        };
+        let known = self.resources.iter().position(is_same);
+        let id =
+            known.unwrap_or_else(|| self.add(name, Body::ExternalBuffer(buffer.clone()), 1, |_| (key, dependence)));
         BufferRef { id, count, element: PhantomData }
     }
 

@@ -5,14 +5,16 @@ use ash::vk;
 use super::records::{COUNT_WORD, STAGE_WORDS};
 use super::views::SpecularViews;
 use crate::frame::light_set::LightSet;
+use crate::frame::view_layout::TILE;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
 use crate::shaders::photons::{Choose, ChoosePush, List, ListPush, Pyramid, PyramidPush};
+use crate::shaders::types;
 
 /// Words of the pyramid before its sums (glsl/photons/pyramid.glsl).
 const PYRAMID_COUNTS: u32 = 32;
 /// Levels that one pass adds.
-const LEVELS_OF_PASS: usize = 4;
+const LEVELS_OF_PASS: usize = 2;
 
 /// Words of the choice (glsl/photons/choice.glsl).
 const CHOICE_LEVEL: usize = 3;
@@ -56,6 +58,18 @@ fn level_table(size: [u32; 2]) -> (Vec<[u32; 4]>, usize, usize) {
     (levels, count, words as usize)
 }
 
+/// Column and row of every square of 16x16 texels that belongs to a view.
+fn tiles_of(set: &LightSet) -> Vec<u32> {
+    let place = |tile: &types::LightTile| {
+        let [column, row] = tile.origin.map(|at| at.cast_unsigned() / TILE);
+        row << 16 | column
+    };
+    let mut places: Vec<u32> = set.atlas.tiles.iter().map(place).collect();
+    // A buffer holds something; nothing of an atlas without tiles is read.
+    places.resize(places.len().max(1), 0);
+    places
+}
+
 /// Declares the passes; at most `most` photons in `stages` stages of rays.
 pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularViews, most: u32, stages: usize) -> Choice {
     let size = set.atlas.size.map(|side| side.max(1));
@@ -70,17 +84,20 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         arrival_counts: graph.buffer("photons.arrival_counts", STAGE_WORDS * (stages + 1)),
     };
 
-    graph.fill_buffer("caustics/photons/mask/clear", made.pyramid, 0);
+    graph.fill_buffer("caustics/photons/mask-clear", made.pyramid, 0);
+    let tiles = tiles_of(set);
+    let tile_list = graph.upload("photons.tiles", &tiles, Dependence::LIGHTS).texels(WORDS);
     for level in (0..level_count.saturating_sub(1).max(1)).step_by(LEVELS_OF_PASS) {
+        let [columns, rows] = [0, 1].map(|axis| table[level][axis].div_ceil(4));
+        let count = if level == 0 { 16 * set.atlas.tiles.len() as u32 } else { columns * rows };
         let pass = Pyramid {
-            mask: views.mask.sampled(),
+            mask: views.mask.read(),
             levels: made.levels.clone(),
+            tiles: tile_list.clone(),
             pyramid: made.pyramid.read_write(),
-            push: PyramidPush { level: level as u32 },
+            push: PyramidPush { level: level as u32, columns, count },
         };
-        let [width, height, ..] = table[level];
-        let name = format!("caustics/photons/mask/levels.{level}");
-        graph.pass(&name, pass).groups([width.div_ceil(16), height.div_ceil(16), 1]);
+        graph.pass(&format!("caustics/photons/mask.{level}"), pass).threads([count, 1, 1]);
     }
 
     let pass = Choose {
@@ -92,7 +109,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         push: ChoosePush { level_count: level_count as u32, most, stage_count: stages as u32 + 1 },
     };
     graph
-        .pass("caustics/photons/choose/level", pass)
+        .pass("caustics/photons/choose", pass)
         .count("specular texels", made.pyramid, 0)
         .count("level", made.choice, CHOICE_LEVEL)
         .count("photons", made.choice, CHOICE_PHOTONS)
@@ -107,7 +124,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         push: ListPush { level_count: level_count as u32, capacity: most },
     };
     graph
-        .pass("caustics/photons/choose/list", pass)
+        .pass("caustics/photons/choose-list", pass)
         .count("blocks", made.choice, CHOICE_LISTED)
         .threads_indirect(made.choice, 0);
     made

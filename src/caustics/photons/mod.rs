@@ -70,7 +70,7 @@ pub(crate) struct TracedPhotons {
     pub(crate) choice: BufferRef<u32>,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) arrival_counts: BufferRef<u32>,
-    /// Photons at the last specular surfaces but none: those of the light views if there is one bounce.
+    /// Photons at the surfaces that the last stage's rays leave: those which lights see, if there is one bounce.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) arrivals: BufferRef<[u32; 4]>,
     /// The rays of the last stage.

@@ -46,7 +46,7 @@ pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -
     };
     let list = draw_list(data, Attributes::Plain, &views, plain);
     graph
-        .raster("caustics/photons/views/plain", pass, over_depth(Attributes::Plain, data))
+        .raster("caustics/photons/views", pass, over_depth(Attributes::Plain, data))
         .depth_test(lights.depth)
         .color_fresh(made.surface)
         .color_fresh(made.layer)
@@ -55,7 +55,7 @@ pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -
 
     let textured = |drawn: &DrawnInstance| drawn.specular && drawn.textured;
     if !data.drawn.iter().any(textured) {
-        graph.skip("caustics/photons/views/textured", "no textured specular surface");
+        graph.skip("caustics/photons/views-textured", "no textured specular surface");
         return made;
     }
     let pass = SpecularTextured {
@@ -71,7 +71,7 @@ pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -
     };
     let list = draw_list(data, Attributes::Textured, &views, textured);
     graph
-        .raster("caustics/photons/views/textured", pass, over_depth(Attributes::Textured, data))
+        .raster("caustics/photons/views-textured", pass, over_depth(Attributes::Textured, data))
         .depth_test(lights.depth)
         .color(made.surface, None)
         .color(made.layer, None)
