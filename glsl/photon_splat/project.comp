@@ -36,7 +36,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 const uint NO_CELL = 0xFFFFFFFFu;
-const float LEAST_SAMPLES = 1.25;
+const float LEAST_SAMPLES = 1.0;
 const float FEW_SAMPLES = 3.0;
 const float MOST_SAMPLES = 150.0;
 
