@@ -55,12 +55,10 @@ impl ImageRef {
     }
 
     /// Some texels are written; the others keep what they held.
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn modify(self) -> WriteImage {
         WriteImage(self.access(ImageUse::StorageModify))
     }
 
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn read_write(self) -> ReadWriteImage {
         ReadWriteImage(self.access(ImageUse::StorageModify))
     }
