@@ -36,5 +36,7 @@ mod skipping;
 mod sppm;
 mod tonemap;
 mod traced_direct;
+mod vpl_paths;
 mod vpl_regions;
 mod vpl_samples;
+mod vpl_visibility;
