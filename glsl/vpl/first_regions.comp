@@ -28,10 +28,10 @@ layout(push_constant, scalar) uniform Push {
 
 Square square_of_pixel(ivec2 pixel) {
     float pixel_depth = is_inside(pixel, push.size) ? texelFetch(depth, pixel, 0).x : 0.0;
-    if (pixel_depth <= 0.0) {
+    uvec4 packed = texelFetch(surface, min(pixel, push.size - 1), 0);
+    if (!is_receiver(pixel_depth, packed)) {
         return Square(vec4(0.0), vec3(0.0), vec3(0.0));
     }
-    uvec2 packed = texelFetch(surface, pixel, 0).xy;
     vec3 normal = unpack_direction(packed.x);
     vec3 plane_normal = packed.x == packed.y ? normal : unpack_direction(packed.y);
     vec2 ndc = ndc_of_pixel(pixel, push.size);

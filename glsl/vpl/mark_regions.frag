@@ -6,7 +6,8 @@
 // export of stencil values is needed.
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform sampler2D planes;
+layout(set = 0, binding = 1) uniform usampler2D surface;
+layout(set = 0, binding = 2) uniform sampler2D planes;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;         // pixels
@@ -15,7 +16,7 @@ layout(push_constant, scalar) uniform Push {
 
 void main() {
     Region region = region_at(push.size, ivec2(gl_FragCoord.xy), push.level_count);
-    if (!is_valid(depth, planes, push.size, region, push.level_count)) {
+    if (!is_valid(depth, surface, planes, push.size, region, push.level_count)) {
         discard;
     }
 }

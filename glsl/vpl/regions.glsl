@@ -52,13 +52,19 @@ bool is_flat(sampler2D planes, ivec2 size, int level, ivec2 cell) {
     return all(lessThan(cell, size_of_level(size, level))) && texelFetch(planes, cell, level - 1).x > 0.0;
 }
 
-// A region is valid if it is flat but the next larger one that holds it is not (alg. 3.1). `depth` is the G-buffer's: a pixel that shows a
-// surface is flat. So every pixel with a surface lies in exactly one valid region.
-bool is_valid(sampler2D depth, sampler2D planes, ivec2 size, Region region, int level_count) {
+// Whether a pixel of the G-buffer takes diffuse light: it shows a surface, and one that has an albedo (lib/surface_packing.glsl).
+bool is_receiver(float pixel_depth, uvec4 pixel_surface) {
+    return pixel_depth > 0.0 && (pixel_surface.z | pixel_surface.w & 0xFFFFu) != 0u;
+}
+
+// A region is valid if it is flat but the next larger one that holds it is not (alg. 3.1). `depth` and `surface` are the G-buffer's: a pixel
+// that takes light is flat. So every such pixel lies in exactly one valid region.
+bool is_valid(sampler2D depth, usampler2D surface, sampler2D planes, ivec2 size, Region region, int level_count) {
     if (region.level < 0 || region.level + 1 < level_count && is_flat(planes, size, region.level + 1, region.cell / 2)) {
         return false;
     }
-    return region.level == 0 ? texelFetch(depth, region.cell, 0).x > 0.0 : is_flat(planes, size, region.level, region.cell);
+    return region.level == 0 ? is_receiver(texelFetch(depth, region.cell, 0).x, texelFetch(surface, region.cell, 0))
+                             : is_flat(planes, size, region.level, region.cell);
 }
 
 #endif

@@ -91,6 +91,32 @@ ivec2 reflecting_texel(ivec2 block, ivec2 wanted) {
     return nearest;
 }
 
+// Area of a VPL's disc over that of its cell, at most: neighbours overlap so far that a wall of equal VPLs looks even to what is close to
+// it. Measured against path tracing in a Cornell box with 256 VPLs: rrmse 0.090 at 1, 0.066 at 2, 0.050 at 4, 0.049 at 5.
+const float MOST_OVERLAP = 5.0;
+
+// Whether a disc of this radius ends before the surface does: in eight directions the view sees, behind the disc's rim, something on the disc's
+// plane or in front of it. A wall that meets another one goes on in this sense (vpl/disc.glsl folds the disc there), a box's edge does not.
+bool surface_goes_on(LightView view, vec3 position_rs, vec3 normal, float radius) {
+    vec3 along = normalize(cross(normal, abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    vec3 across = cross(normal, along);
+    bool goes_on = true;
+    [[dont_unroll]] for (int i = 0; i < 8 && goes_on; ++i) {
+        float angle = 0.25 * PI * float(i);
+        vec3 way = position_rs + radius * (cos(angle) * along + sin(angle) * across) - view.origin_rs;
+        float z = dot(way, view.forward);
+        vec2 tangent = vec2(dot(way, view.right), dot(way, view.down)) / (is_orthographic(view) ? 1.0 : max(z, 1e-20));
+        ivec2 texel = ivec2(clamp((tangent - view.tangent_origin) / view.tangent_step, vec2(-1.0), vec2(view.rect_size)));
+        if (z > view.near && all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, view.rect_size))) {
+            texel += view.rect_origin;
+            float depth = texelFetch(light_depth, texel, 0).x;
+            vec3 seen = position_of_texel(view, tangent_of_texel(view, vec2(texel) + 0.5), max(depth, 1e-6));
+            goes_on = depth > 0.0 && dot(normal, seen - position_rs) > -0.1 * radius;
+        }
+    }
+    return goes_on;
+}
+
 // The view that holds VPL k.
 uint find_view(uint k) {
     uint view = 0u;
@@ -177,6 +203,11 @@ void main() {
         depth = 1.0;
     }
     float area = max(cell.a, area_of_texel(view, tangent, depth, normal));
-    vpls[2u * k] = pack_vpl_position(position_of_texel(view, tangent, depth), area);
+    vec3 position_rs = position_of_texel(view, tangent, depth);
+    float overlap = MOST_OVERLAP;
+    while (overlap > 1.0 && !surface_goes_on(view, position_rs, normal, sqrt(overlap * area * INVERSE_PI))) {
+        overlap *= 0.6;
+    }
+    vpls[2u * k] = pack_vpl_position(position_rs, max(overlap, 1.0) * area);
     vpls[2u * k + 1u] = pack_vpl_strength(flux, normal);
 }

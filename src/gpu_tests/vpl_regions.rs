@@ -32,8 +32,8 @@ fn words(floats: &[f32]) -> Vec<u32> {
     floats.iter().map(|float| float.to_bits()).collect()
 }
 
-/// The valid regions by their list, as texels of the flattened image, and the depth of each pixel.
-fn listed(session: &Session, name: &str) -> (Vec<[u32; 2]>, Vec<f32>) {
+/// The valid regions by their list, as texels of the flattened image, and whether each pixel shows a surface that takes diffuse light.
+fn listed(session: &Session, name: &str) -> (Vec<[u32; 2]>, Vec<bool>) {
     let scene = builtin(name);
     let request = request(SIZE, scene.camera_view(None).expect("its camera"), &[]);
     let frame: Probe = probe(session, &scene, &with("compute"), &request, |graph, declared| {
@@ -41,13 +41,16 @@ fn listed(session: &Session, name: &str) -> (Vec<[u32; 2]>, Vec<f32>) {
         vec![
             graph.read_back_buffer(list),
             graph.read_back(declared.gbuffer.depth),
+            graph.read_back(declared.gbuffer.surface),
             slot(graph, declared, Slot::Diffuse),
         ]
     });
     let list = words(&frame.floats(0));
     let count = list[3] as usize;
     assert_eq!(list[..3], [list[3].div_ceil(128), 1, 1], "the groups of the indirect dispatch");
-    (list[4..4 + count].iter().map(|texel| [texel & 0xFFFF, texel >> 16]).collect(), frame.floats(1))
+    let pixels = frame.pixels([1, 2], SIZE);
+    let takes = pixels.iter().map(|pixel| pixel.as_ref().is_some_and(|pixel| pixel.albedo.max_element() > 0.0));
+    (list[4..4 + count].iter().map(|texel| [texel & 0xFFFF, texel >> 16]).collect(), takes.collect())
 }
 
 /// Level and cell of a texel of the flattened image (glsl/vpl/regions.glsl).
@@ -62,11 +65,11 @@ fn region_of(texel: [u32; 2]) -> (u32, [u32; 2]) {
 }
 
 #[test]
-fn every_pixel_with_a_surface_lies_in_one_valid_region() {
+fn every_pixel_that_takes_light_lies_in_one_valid_region() {
     let session = Session::open();
     for name in SCENES {
-        let (regions, depth) = listed(&session, name);
-        let mut covered = vec![0_u32; depth.len()];
+        let (regions, takes) = listed(&session, name);
+        let mut covered = vec![0_u32; takes.len()];
         let mut levels = [0_u32; 7];
         for &texel in &regions {
             let (level, cell) = region_of(texel);
@@ -77,11 +80,11 @@ fn every_pixel_with_a_surface_lies_in_one_valid_region() {
                 }
             }
         }
-        println!("{name}: {} regions of {} pixels, by level {levels:?}", regions.len(), depth.len());
-        for (index, (count, depth)) in covered.iter().zip(&depth).enumerate() {
-            assert_eq!(*count, u32::from(*depth > 0.0), "{name}: pixel {index}");
+        println!("{name}: {} regions of {} pixels, by level {levels:?}", regions.len(), takes.len());
+        for (index, (count, takes)) in covered.iter().zip(&takes).enumerate() {
+            assert_eq!(*count, u32::from(*takes), "{name}: pixel {index}");
         }
-        assert!(levels[3] > 0 && regions.len() * 3 < depth.len(), "{name}: large flat parts are large regions");
+        assert!(levels[3] > 0 && regions.len() * 3 < takes.len(), "{name}: large flat parts are large regions");
     }
 }
 
@@ -122,7 +125,7 @@ fn relative_error(a: &ColorImage, b: &ColorImage) -> f64 {
 #[test]
 fn regions_come_close_to_pixels() {
     let session = Session::open();
-    for (name, bound) in [("cornell-empty", 0.02), ("cornell-point", 0.03), ("ring", 0.03)] {
+    for (name, bound) in [("cornell-empty", 0.02), ("cornell-point", 0.03), ("ring", 0.05)] {
         let pixels = diffuse(&session, name, [256, 256], &with("pixels"));
         let regions = diffuse(&session, name, [256, 256], &with("auto"));
         let error = relative_error(&regions, &pixels);

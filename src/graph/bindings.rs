@@ -56,12 +56,10 @@ impl ImageRef {
     }
 
     /// Some texels are written; the others keep what they held.
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn modify(self) -> WriteImage {
         WriteImage(self.access(ImageUse::StorageModify))
     }
 
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn read_write(self) -> ReadWriteImage {
         ReadWriteImage(self.access(ImageUse::StorageModify))
     }
@@ -106,7 +104,6 @@ impl<T> BufferRef<T> {
         WriteBuffer(self.access(BufferUse::Write), PhantomData)
     }
 
-    #[allow(dead_code, reason = "lists of the methods to come")]
     pub(crate) fn read_write(self) -> ReadWriteBuffer<T> {
         ReadWriteBuffer(self.access(BufferUse::Modify), PhantomData)
     }

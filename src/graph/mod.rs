@@ -109,6 +109,11 @@ impl<'s> Graph<'s> {
         self.store.device().is_cpu()
     }
 
+    /// The longest side that an image of the device may have.
+    pub(crate) fn longest_side(&self) -> u32 {
+        self.store.device().limits().max_image_dimension2_d
+    }
+
     fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {
         debug_assert!(self.resources.iter().all(|resource| resource.name != name), "{name} is declared twice");
         let content = (0..places).map(content).collect();
@@ -189,7 +194,6 @@ impl<'s> Graph<'s> {
     }
 
     /// Sets every texel of a colour image.
-    #[allow(dead_code, reason = "heads of per-pixel lists and grids of the methods to come start from it")]
     pub(crate) fn clear_image(&mut self, name: &str, image: ImageRef, value: ClearColor) {
         let bytes = format!("{value:?}").into_bytes();
         let work = Work::ClearImage { image: image.id, mips: image.mips.0..image.mips.1, value };
@@ -198,7 +202,6 @@ impl<'s> Graph<'s> {
     }
 
     /// Sets every word of a buffer.
-    #[allow(dead_code, reason = "lists and counters of the methods to come start from it")]
     pub(crate) fn fill_buffer<T>(&mut self, name: &str, buffer: BufferRef<T>, word: u32) {
         let access = buffer.access(BufferUse::Clear);
         let work = Work::FillBuffer { buffer: buffer.id, word };

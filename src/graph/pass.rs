@@ -47,7 +47,6 @@ pub(crate) struct DrawList {
 
 pub(super) enum Draws {
     Meshes(Box<DrawList>),
-    #[allow(dead_code, reason = "full-screen and point passes of the methods to come")]
     Vertices {
         vertices: u32,
         instances: u32,
@@ -63,21 +62,10 @@ pub(super) enum Draws {
 pub(super) enum Work {
     Skipped(String),
     Dispatch([u32; 3]),
-    #[allow(dead_code, reason = "photon and list passes of the methods to come")]
-    DispatchIndirect {
-        buffer: usize,
-        offset: u64,
-    },
+    DispatchIndirect { buffer: usize, offset: u64 },
     Draw(Draws),
-    ClearImage {
-        image: usize,
-        mips: Range<u32>,
-        value: ClearColor,
-    },
-    FillBuffer {
-        buffer: usize,
-        word: u32,
-    },
+    ClearImage { image: usize, mips: Range<u32>, value: ClearColor },
+    FillBuffer { buffer: usize, word: u32 },
 }
 
 /// Attachments of a raster pass and the values that they are cleared to.
@@ -208,7 +196,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Reports the word at `index` of `buffer` after the pass as a work counter.
-    #[allow(dead_code, reason = "list nodes and photons of the methods to come")]
     pub(crate) fn count(mut self, name: &str, buffer: BufferRef<u32>, index: usize) -> Self {
         self.graph.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
         self.pass.counters.push(Counter { name: name.to_owned(), buffer: buffer.id, offset: index as u64 * 4 });
@@ -250,7 +237,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
 
     /// The stencil attachment; `clear` as for colours. Without clearing and without writes it is only tested. Of an image
     /// that holds depth too, the depth is kept, unless the pass clears it as its depth attachment.
-    #[allow(dead_code, reason = "multi-resolution layers of the methods to come")]
     pub(crate) fn stencil(mut self, image: ImageRef, clear: Option<u32>) -> Self {
         let tests = self
             .pass
@@ -302,7 +288,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Runs as many groups as the three words at `index` of `arguments` say.
-    #[allow(dead_code, reason = "photon and list passes of the methods to come")]
     pub(crate) fn threads_indirect(mut self, arguments: BufferRef<u32>, index: usize) {
         self.pass.others.push(arguments.access(BufferUse::Indirect));
         self.graph.resources[arguments.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
@@ -316,7 +301,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Draws `vertices` vertices without vertex buffers, `instances` times.
-    #[allow(dead_code, reason = "full-screen and point passes of the methods to come")]
     pub(crate) fn vertices(self, vertices: u32, instances: u32) {
         self.add(Work::Draw(Draws::Vertices { vertices, instances }));
     }

@@ -122,7 +122,7 @@ pub struct VplSettings {
     pub visibility: VplVisibility,
     /// Where irradiance is gathered.
     pub shading: VplShading,
-    /// Sizes of regions: 1 (pixels alone) to 7 (1 to 64 pixels a side).
+    /// Sizes of regions: 1 (pixels alone) to 7 (1 to 64 pixels a side, but at most a thirty-second of the image's shorter side).
     pub levels: u32,
     /// How far a region may be from a plane, over its distance; 0 to 1. Larger: fewer regions, light that bleeds over edges.
     pub depth_threshold: f64,

@@ -58,7 +58,10 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
     let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
     let shading = match inputs.settings.shading {
-        _ if level_count == 1 => VplShading::Pixels,
+        // An image so wide that its levels do not fit beside each other is gathered pixel by pixel.
+        _ if level_count == 1 || regions::flattened_size(inputs.buffer.size)[0] > graph.longest_side() => {
+            VplShading::Pixels
+        }
         VplShading::Auto if graph.runs_on_cpu() => VplShading::Compute,
         VplShading::Auto => VplShading::Stencil,
         chosen => chosen,
