@@ -62,8 +62,9 @@ fn paths_end_on_the_walls_and_cover_them() {
         of_wall[2 * axis + usize::from(normal[axis] < 0.0)] += 1;
     }
     assert!(of_wall.iter().all(|&count| count >= 14), "VPLs of each wall: {of_wall:?} of 171");
-    let area: f64 = bounces[1].iter().map(|vpl| f64::from(vpl.texels[0].w) * std::f64::consts::PI).sum();
-    assert!((area / 24.0 - 1.0).abs() < 0.35, "their discs have {area} m² of the walls' 24 m²");
+    // Each disc has the area that its VPL stands for, times the overlap.
+    let area: f64 = bounces[1].iter().map(|vpl| f64::from(vpl.texels[0].w) * std::f64::consts::PI / 5.0).sum();
+    assert!((area / 24.0 - 1.0).abs() < 0.1, "their discs have {area} m² of the walls' 24 m²");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::probe::{Pixel, Vpl, probe, slot};
 use super::scenes::{add_light, box_faces, builtin, lambert, place, quad, request, view, vpl_settings};
 use super::session::Session;
 use crate::frame::twins;
-use crate::renderer::{ColorImage, FrameRequest, Settings, Slot};
+use crate::renderer::{ColorImage, FrameRequest, Preset, Settings, Slot, Technique};
 use crate::scene::{LightKind, Material, Scene};
 
 const SIZE: [u32; 2] = [48, 36];
@@ -26,6 +26,13 @@ fn diffuse(session: &Session, scene: &Scene, request: &FrameRequest, settings: &
 /// Mean over pixels and channels.
 fn mean(image: &ColorImage) -> f64 {
     image.pixels.iter().flatten().map(|&channel| f64::from(channel)).sum::<f64>() / (3 * image.pixels.len()) as f64
+}
+
+/// rrmse of a against b.
+fn relative_error(a: &ColorImage, b: &ColorImage) -> f64 {
+    let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    let squares: f64 = pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    (squares / (3 * b.pixels.len()) as f64).sqrt() / mean(b)
 }
 
 /// A box of 4 m x 2 m x 2 m with a lamp in its left half. A wall across the middle leaves a gap of `gap` metres below the ceiling.
@@ -69,8 +76,7 @@ fn blocked(triangles: &[[DVec3; 3]], from: DVec3, to: DVec3) -> bool {
     })
 }
 
-/// The VPL's part of a pixel's irradiance by the device's own form factor: what it gives when it is the only one is not needed where the
-/// comparison takes the point form far away.
+/// The VPL's part of a pixel's irradiance, as of a point.
 fn point_term(vpl: &Vpl, pixel: &Pixel) -> DVec3 {
     let difference = vpl.texels[0].truncate().as_dvec3() - pixel.position_rs;
     let squared = difference.length_squared();
@@ -176,15 +182,7 @@ fn maps_come_close_to_rays() {
             diffuse(&session, &scene, &request, &settings)
         };
         let (maps, rays) = (of("ism"), of("traced"));
-        let squares: f64 = maps
-            .pixels
-            .iter()
-            .flatten()
-            .zip(rays.pixels.iter().flatten())
-            .map(|(a, b)| f64::from(a - b).powi(2))
-            .sum::<f64>()
-            / (3 * rays.pixels.len()) as f64;
-        let error = squares.sqrt() / mean(&rays);
+        let error = relative_error(&maps, &rays);
         println!("{what}: maps against rays, rrmse {error:.3}, mean ratio {:.3}", mean(&maps) / mean(&rays));
         assert!(error < bound, "{what}: {error}");
     }
@@ -234,4 +232,31 @@ fn any_map_any_count_and_any_size_give_finite_light_and_the_same_bits() {
             }
         }
     }
+}
+
+/// Against path tracing of as many bounces: visibility by maps is nearer to the truth than none, by rays nearer still; and so is each bounce
+/// more to all light.
+#[test]
+fn each_step_lowers_the_error() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let request = request(SIZE, scene.camera_view(None).expect("its camera"), &[Slot::Diffuse]);
+    let reference = |bounces: &str| {
+        let mut settings = Settings::new(Technique::Path, Preset::Default);
+        settings.set("path.spp", "256").expect("a number of samples");
+        settings.set("path.bounces", bounces).expect("a number of bounces");
+        diffuse(&session, &scene, &request, &settings)
+    };
+    let error = |visibility: &str, bounces: &str, of: &ColorImage| {
+        let settings = with(visibility, &[("vpl.count", "256"), ("vpl.bounces", bounces), ("vpl.shading", "pixels")]);
+        relative_error(&diffuse(&session, &scene, &request, &settings), of)
+    };
+    let one = reference("1");
+    let [none, ism, traced] = ["none", "ism", "traced"].map(|visibility| error(visibility, "1", &one));
+    println!("one bounce, rrmse: {none:.3} without visibility, {ism:.3} by maps, {traced:.3} by rays");
+    assert!(traced < 0.15 && traced < ism && ism < none);
+    let all = reference("16");
+    let errors = ["1", "2", "4", "8"].map(|bounces| error("traced", bounces, &all));
+    println!("1, 2, 4 and 8 bounces against 16, rrmse: {errors:.3?}");
+    assert!(errors.windows(2).all(|pair| pair[1] < pair[0]) && errors[3] < 0.2, "{errors:?}");
 }
