@@ -26,7 +26,7 @@ const float LEAST_KNOWN = 0.15;
 // Surfaces are pushed back, lest those that meet in a corner shadow each other: by so many texels as an angle, but no further than so many times
 // the radius of a point's disc, which is how well its place is known.
 const float SLACK_TEXELS = 5.0;
-const float SLACK_DISCS = 3.0;
+const float SLACK_DISCS = 2.0;
 
 void main() {
     ivec2 texel;

@@ -27,6 +27,8 @@ layout(push_constant, scalar) uniform Push {
     uint block_count;
 } push;
 
+// Area of the discs over that of the surfaces. At 1 a third of a near wall is not covered, and what is behind shows through.
+const float OVERLAP = 2.0;
 // How far from a texel's centre a point of no extent is drawn, in texels.
 const float LEAST_EXTENT = 0.4;
 
@@ -77,7 +79,7 @@ void draw_texel(uint first, ivec2 texel, vec3 position, vec3 plane, float least_
 void main() {
     uint number = gl_GlobalInvocationID.x;
     float area = texelFetch(area_before, int(push.block_count)).x / float(push.points_of_set);
-    float radius = sqrt(area * INVERSE_PI);
+    float radius = sqrt(area * (OVERLAP * INVERSE_PI));
     for (uint k = gl_WorkGroupID.y; k < push.vpl_count; k += gl_NumWorkGroups.y) {
         uint first = k * push.resolution * push.resolution;
         Vpl vpl = unpack_vpl(texelFetch(vpls, 2 * int(k)), texelFetch(vpls, 2 * int(k) + 1));

@@ -38,6 +38,9 @@ layout(set = 0, binding = 10) buffer Vpls { vec4 vpls[]; };
 
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
 
+// Area of a disc over A': neighbours overlap, as those of the first bounce do (glsl/vpl/vpls.comp).
+const float OVERLAP = 5.0;
+
 // Parents that the density is taken over, at most; of more, every k-th.
 const uint DENSITY_PARENTS = 256u;
 
@@ -112,7 +115,7 @@ void main() {
         vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - rays.shift;
         vec3 face = front_normal(triangle);
         vec3 normal = dot(face, vpl.position_rs - position_rs) < 0.0 ? -face : face;
-        float area = min(1.0 / max(density_of_paths(position_rs, normal), 1e-30), PI * rays.radius * rays.radius);
+        float area = min(OVERLAP / max(density_of_paths(position_rs, normal), 1e-30), PI * rays.radius * rays.radius);
         position = pack_vpl_position(position_rs, area);
         strength = pack_vpl_strength(flux * albedo_at(triangle, vec3(1.0 - hit.y - hit.z, hit.yz)), normal);
     }

@@ -44,5 +44,7 @@ mod splat_bench;
 mod sppm;
 mod tonemap;
 mod traced_direct;
+mod vpl_paths;
 mod vpl_regions;
 mod vpl_samples;
+mod vpl_visibility;

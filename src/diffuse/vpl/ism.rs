@@ -43,11 +43,6 @@ impl ImperfectShadowMaps {
     pub(crate) fn texels(&self) -> TexelBuffer {
         self.maps.texels(FLOAT)
     }
-
-    #[cfg(test)]
-    pub(crate) fn buffer(&self) -> BufferRef<f32> {
-        self.maps
-    }
 }
 
 /// Points that stand for the scene's surfaces, in sets.
