@@ -97,7 +97,7 @@ impl Stage {
         ];
         let mut executed = graph.run(Timing::Passes).expect("a frame");
         let [pixels, nodes, count] = reads.map(|read| bytemuck::pod_collect_to_vec::<u8, u32>(&executed.take(read)));
-        Lists { pixels, nodes, count: count[0], outgrown: executed.outgrown }
+        Lists { pixels, nodes, count: count[0], outgrown: executed.outgrown, passes: executed.passes }
     }
 
     fn trace(&mut self, settings: &PhotonSettings, rays: &[Ray]) -> Found {
@@ -136,7 +136,7 @@ impl Stage {
             let traced = PhotonRays { rays: graph.upload("rays", &padded, Dependence::NONE), hits, stage: 0, capacity };
             match settings.trace {
                 PhotonTracing::Lines => lines::trace(&mut graph, &lists, &traced, counts),
-                _ => drop(march::trace(&mut graph, &lists, &traced, counts)),
+                _ => march::trace(&mut graph, &lists, &traced, counts),
             }
             let read = graph.read_back_buffer(hits);
             let mut executed = graph.run(Timing::Passes).expect("a frame");
@@ -152,7 +152,7 @@ impl Stage {
         let truth = trace_in(&mut self.store, &self.bvh, rays);
         let bounds = self.scene.bounds().expect("triangles");
         let texel = (bounds.max - bounds.min).max_element() as f32 / settings.resolution as f32;
-        let mut compared = Comparison { texel, rays: rays.len(), ..Comparison::default() };
+        let mut compared = Comparison { rays: rays.len(), ..Comparison::default() };
         for (hit, real) in found.hits.iter().zip(&truth.hits) {
             let distance = f32::from_bits(hit[0]);
             match (hit[0] != HIT_NONE, real.triangle != NO_TRIANGLE) {
@@ -203,7 +203,6 @@ fn direction(random: &mut Random) -> Vec3 {
 #[derive(Debug, Default)]
 struct Comparison {
     rays: usize,
-    texel: f32,
     /// The same surface within a texel of the distance; nothing where there is nothing.
     right: usize,
     /// Another surface within three texels.
@@ -234,6 +233,7 @@ struct Lists {
     nodes: Vec<u32>,
     count: u32,
     outgrown: Vec<(String, [usize; 2])>,
+    passes: Vec<PassTiming>,
 }
 
 const NO_NODE: u32 = u32::MAX;
@@ -333,6 +333,21 @@ fn a_pool_that_is_too_small_grows() {
     let whole = stage.lists(&settings, Some(16));
     assert!(whole.outgrown.is_empty() && whole.count == cut.count, "{:?}", whole.outgrown);
     assert_eq!((0..texels).map(|texel| whole.of_texel(texel).len()).sum::<usize>(), whole.count as usize);
+}
+
+#[test]
+fn lists_stand_while_the_geometry_does() {
+    let session = Session::open();
+    let mut stage = Stage::new(&session, builtin("ring"));
+    for geometry in ["lists", "layers:2"] {
+        for projection in ["scene", "camera"] {
+            let changes = [("resolution", "32"), ("geometry", geometry), ("projection", projection)];
+            let first = stage.lists(&photon_settings(&changes), None);
+            let again = stage.lists(&photon_settings(&changes), None);
+            assert_eq!(first.count, again.count);
+            assert!(again.passes.iter().all(|pass| pass.skipped.is_some()), "{changes:?}: {:?}", again.passes);
+        }
+    }
 }
 
 #[test]
@@ -480,41 +495,50 @@ fn cpu_ms() -> f64 {
     (ticks(11) + ticks(12)) * 10.0 / 2.0
 }
 
+/// The values that an environment variable names, by commas.
+fn named(variable: &str, default: &str) -> Vec<String> {
+    std::env::var(variable).unwrap_or(default.to_owned()).split(',').map(str::to_owned).collect()
+}
+
 #[test]
 #[ignore = "a measurement"]
 fn rays_against_the_hierarchy() {
+    const RUNS: u32 = 20;
     let session = Session::open();
-    let list = |name: &str, default: &str| -> Vec<String> {
-        std::env::var(name).unwrap_or(default.to_owned()).split(',').map(str::to_owned).collect()
-    };
-    for name in list("SCENES", "ring,ring-occluded,cornell-point,water,two-rooms") {
+    let views = named("IRRADIA_LIST_VIEWS", "1,2,3");
+    for name in named("IRRADIA_LIST_SCENES", "ring,ring-occluded,cornell-point,water,two-rooms") {
         let mut stage = Stage::new(&session, builtin(&name));
-        let rays = [stage.free_rays(20_000, 1), stage.surface_rays(20_000, 2)];
-        for resolution in list("SIZES", "128,256") {
-            for trace in list("TRACES", "march,lines") {
-                for views in list("VIEWS", "1,2,3") {
-                    let settings =
-                        photon_settings(&[("resolution", &resolution), ("trace", &trace), ("views", &views)]);
-                    for (what, rays) in ["free", "surface"].iter().zip(&rays) {
-                        let compared = stage.compare(&settings, rays);
-                        println!("{name:14} {resolution} {trace} {views} views, {what:8}: {compared}");
-                    }
+        let rays = stage.surface_rays(38_000, 3);
+        let timed = [("surface", rays.clone()), ("coherent", coherent_rays(195))];
+        for resolution in named("IRRADIA_LIST_SIZES", "128,256") {
+            for trace in named("IRRADIA_LIST_TRACES", "march,lines") {
+                let place = format!("{name} {resolution} {trace}");
+                let given = [("resolution", &*resolution), ("trace", &*trace)];
+                for views in &views {
+                    let settings = photon_settings(&[&given[..], &[("views", views)]].concat());
+                    println!("{place} {views} views: {}", stage.compare(&settings, &rays));
                 }
-                let settings = photon_settings(&[("resolution", &resolution), ("trace", &trace)]);
-                for rays in [stage.surface_rays(38_000, 3), coherent_rays(195)] {
-                    let first = stage.trace(&settings, &rays);
+                let settings = photon_settings(&given);
+                for (what, rays) in &timed {
+                    let first = stage.trace(&settings, rays);
                     let before = cpu_ms();
-                    let runs: Vec<Found> = (1..21).map(|salt| stage.trace_again(&settings, &rays, salt)).collect();
-                    let cpu = (cpu_ms() - before) / 20.0;
+                    let runs: Vec<Found> = (1..=RUNS).map(|salt| stage.trace_again(&settings, rays, salt)).collect();
+                    let cpu = (cpu_ms() - before) / f64::from(RUNS);
                     let least = runs.iter().map(|run| run.ms(&trace)).fold(f64::MAX, f64::min);
-                    println!(
-                        "{name:14} {resolution} {trace} lists {:.2} ms (blocks {:.2}), trace {least:.2} ms, cpu {cpu:.2} ms, steps {:.1}, nodes {}",
-                        first.ms("lists"),
-                        first.ms("lists-blocks"),
-                        first.work("march.0", "steps") as f64 / rays.len() as f64,
-                        first.work("lists", "nodes"),
-                    );
+                    let steps = first.work("march.0", "steps") as f64 / rays.len() as f64;
+                    println!("{place} {} {what} rays: {least:.2} ms, cpu {cpu:.2} ms, {steps:.1} steps", rays.len());
                 }
+                let settings = &settings;
+                let before = cpu_ms();
+                let built: Vec<Found> = (0..RUNS).map(|_| stage.trace(settings, &[])).collect();
+                let cpu = (cpu_ms() - before) / f64::from(RUNS);
+                let least = |pass: &str| built.iter().map(|run| run.ms(pass)).fold(f64::MAX, f64::min);
+                let nodes = built[0].work("lists", "nodes");
+                println!(
+                    "{place} lists: {:.2} ms, of that blocks {:.2}, cpu {cpu:.2} ms, {nodes} nodes",
+                    least("lists"),
+                    least("lists-blocks")
+                );
             }
         }
     }
