@@ -1,5 +1,7 @@
 //! Per-pixel lists of scenes, and rays through them against rays through the hierarchy of triangles.
 
+use std::path::Path;
+
 use glam::{DAffine3, Mat4, Vec3};
 
 use super::rays::{NO_TRIANGLE, Random, Ray, ray, trace_in};
@@ -507,7 +509,11 @@ fn rays_against_the_hierarchy() {
     let session = Session::open();
     let views = named("IRRADIA_LIST_VIEWS", "1,2,3");
     for name in named("IRRADIA_LIST_SCENES", "ring,ring-occluded,cornell-point,water,two-rooms") {
-        let mut stage = Stage::new(&session, builtin(&name));
+        let scene = match Path::new(&name) {
+            file if file.exists() => Scene::load(file).expect("a sound file"),
+            _ => builtin(&name),
+        };
+        let mut stage = Stage::new(&session, scene);
         let rays = stage.surface_rays(38_000, 3);
         let timed = [("surface", rays.clone()), ("coherent", coherent_rays(195))];
         for resolution in named("IRRADIA_LIST_SIZES", "128,256") {
