@@ -335,6 +335,8 @@ fn a_pool_that_is_too_small_grows() {
     let whole = stage.lists(&settings, Some(16));
     assert!(whole.outgrown.is_empty() && whole.count == cut.count, "{:?}", whole.outgrown);
     assert_eq!((0..texels).map(|texel| whole.of_texel(texel).len()).sum::<usize>(), whole.count as usize);
+    let again = stage.lists(&settings, Some(16));
+    assert!(again.passes.iter().all(|pass| pass.skipped.is_some()), "{:?}", again.passes);
 }
 
 #[test]
