@@ -25,6 +25,8 @@ mod path_repeats;
 mod path_robustness;
 mod path_weights;
 mod photon_lists;
+mod photon_lists_speed;
+mod photon_stage;
 mod probe;
 mod raster;
 mod rays;
