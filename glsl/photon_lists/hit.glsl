@@ -9,9 +9,11 @@
 #include "photon_lists/view.glsl"
 #include "photons/records.glsl"
 
-// Half the width of a column, texels: a texel's own and a quarter on either side. Wider ones stretch every surface's edge; narrower ones lose
-// hits on convex edges, where the planes of neighbours meet beyond either's column, and at texels that a line passes over.
-const float COLUMN = 0.75;
+// Half the widths of a column, texels: a texel's own, and a little more. Wider columns stretch every surface's edge; narrower ones lose hits on
+// convex edges, where the planes of neighbours meet beyond either's column. A drawn line moreover leaves out texels that the ray crosses
+// at a corner: their neighbours stand in for them.
+const float MARCH_COLUMN = 0.75;
+const float LINE_COLUMN = 1.0;
 
 // Near its start a ray meets the surface that it leaves, since that is known as planes of texels: for so many texels along the ray, what it
 // crosses from behind and what its start lies in, to a fraction of a texel, is no hit. The paper refuses hits with n·r > 0 all along the ray, but
@@ -58,8 +60,8 @@ vec2 clip_to_view(ListView view, ViewRay ray, float resolution, float end) {
 
 const float NO_HIT_DISTANCE = 3e38;
 
-// Along the ray to the surface of a node in the column at `center`, m; NO_HIT_DISTANCE if the ray does not meet it.
-float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, ViewRay along, PhotonRay ray) {
+// Along the ray to the surface of a node in the column around `center`, `width` to each side, m; NO_HIT_DISTANCE if the ray does not meet it.
+float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, float width, ViewRay along, PhotonRay ray) {
     vec3 normal = unpack_direction(node.y);
     vec3 to_node = column.start + uintBitsToFloat(node.x) * column.way - ray.origin_rs;
     float height = dot(normal, to_node);
@@ -70,7 +72,7 @@ float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, Vi
     float texel = view.texel * at.z;
     bool from_behind = facing > 0.0 && (ray.bits & PHOTON_INSIDE) == 0u;
     bool is_start = distance < START_TEXELS * texel && (from_behind || abs(height) < START_HEIGHT * texel);
-    bool in_column = max(off.x, off.y) <= COLUMN && at.z > 0.0;
+    bool in_column = max(off.x, off.y) <= width && at.z > 0.0;
     return distance > 0.0 && in_column && !is_start ? distance : NO_HIT_DISTANCE;
 }
 

@@ -25,7 +25,7 @@ void main() {
         vec2 crossing = (center * along.start.z - along.start.xy) / (along.step.xy - center * along.step.z);
         vec2 speed = abs(along.step.xy - center * along.step.z);
         float t = speed.x > speed.y ? crossing.x : crossing.y;
-        float reach = 2.0 * COLUMN * (along.start.z + t * along.step.z) / max(speed.x, speed.y);
+        float reach = 2.0 * LINE_COLUMN * (along.start.z + t * along.step.z) / max(speed.x, speed.y);
         vec2 depths = along.depth + vec2(t - reach, t + reach) * along.depth_step;
         float known = uintBitsToFloat(hits[4u * ray_index]);
         bool beyond = min(depths.x, depths.y) > uintBitsToFloat(~list.z) || max(depths.x, depths.y) < uintBitsToFloat(list.y);
@@ -36,7 +36,7 @@ void main() {
             uint index = list.x;
             while (index != NO_NODE) {
                 uvec4 node = texelFetch(nodes, int(index));
-                nearest = min(nearest, distance_to_node(node, view, column, center, along, ray));
+                nearest = min(nearest, distance_to_node(node, view, column, center, LINE_COLUMN, along, ray));
                 index = node.z;
             }
             if (nearest < NO_HIT_DISTANCE) {

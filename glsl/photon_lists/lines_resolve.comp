@@ -25,7 +25,7 @@ void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) 
     ViewRay along = view_ray(view, ray);
     vec3 at = along.start + found * along.step;
     ivec2 first = ivec2(floor(clamp(at.xy / at.z, -2.0, float(push.resolution) + 2.0) - 0.5));
-    // Columns reach less than a texel beyond their centres.
+    // Columns reach a texel beyond their centres.
     for (uint place = 0u; place < 4u; ++place) {
         ivec2 cell = first + ivec2(place & 1u, place >> 1);
         uint index = NO_NODE;
@@ -37,7 +37,8 @@ void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) 
         Column column = column_of(view, center);
         while (index != NO_NODE) {
             uvec4 node = texelFetch(nodes, int(index));
-            take_nearer(closest, abs(distance_to_node(node, view, column, center, along, ray) - found), node);
+            float distance = distance_to_node(node, view, column, center, LINE_COLUMN, along, ray);
+            take_nearer(closest, abs(distance - found), node);
             index = node.z;
         }
     }

@@ -38,7 +38,7 @@ void meet_list(uint first, ListView view, vec2 center, ViewRay along, PhotonRay 
     uint index = first;
     while (index != NO_NODE) {
         uvec4 node = texelFetch(nodes, int(index));
-        take_nearer(nearest, distance_to_node(node, view, column, center, along, ray), node);
+        take_nearer(nearest, distance_to_node(node, view, column, center, MARCH_COLUMN, along, ray), node);
         index = node.z;
     }
 }
@@ -67,8 +67,8 @@ void march(uint view_index, PhotonRay ray, inout NodeHit nearest) {
         bool x_first = crossing.x < crossing.y;
         float next = min(max(min(crossing.x, crossing.y), t + BEYOND / fastest), range.y);
 
-        // Hits in a widened column lie up to half a texel before or behind it.
-        float slack = (COLUMN - 0.5) / fastest;
+        // Hits in a widened column lie a little before or behind the texel.
+        float slack = (MARCH_COLUMN - 0.5) / fastest;
         vec2 depths = along.depth + vec2(t - slack, next + slack) * along.depth_step;
         float low = min(depths.x, depths.y);
         float high = max(depths.x, depths.y);

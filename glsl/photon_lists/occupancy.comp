@@ -20,8 +20,8 @@ layout(push_constant, scalar) uniform Push {
     uint view_count;
 } push;
 
-// More than the width of a column and the rounding of its plane's slope.
-const float REACH = 1.05;
+// A little more than MARCH_COLUMN, since slopes are rounded.
+const float REACH = 0.8;
 
 uvec4 slices_of_texel(ListView view, uint view_index, uvec2 texel) {
     Column column = column_of(view, vec2(texel) + 0.5);

@@ -8,14 +8,10 @@ use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::photon_lists::{March, MarchPush};
 
-/// Finds what the rays hit; `counts` holds how many there are. Returns the steps taken and the rays that hit nothing.
-pub(crate) fn trace(
-    graph: &mut Graph<'_>,
-    lists: &SceneLists,
-    rays: &PhotonRays,
-    counts: BufferRef<u32>,
-) -> BufferRef<u32> {
+/// Finds what the rays hit; `counts` holds how many there are.
+pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays, counts: BufferRef<u32>) {
     let words = vk::Format::R32G32B32A32_UINT;
+    // Steps taken, and rays that hit nothing.
     let work = graph.buffer::<u32>(&format!("photons.march_work.{}", rays.stage), 2);
     graph.fill_buffer(&format!("caustics/photons/march-clear.{}", rays.stage), work, 0);
     let pass = March {
@@ -41,5 +37,4 @@ pub(crate) fn trace(
         .count("steps", work, 0)
         .count("misses", work, 1)
         .threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
-    work
 }
