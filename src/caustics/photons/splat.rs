@@ -166,7 +166,7 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         places: graph.buffer("photons.places", capacity),
         cell_counts: graph.buffer("photons.cell_counts", cells),
         cell_peaks: graph.buffer("photons.cell_peaks", cells),
-        tile_list: graph.buffer("photons.tiles", tile_count),
+        tile_list: graph.buffer("photons.splat_tiles", tile_count),
         crowded: graph.buffer("photons.crowded", tile_count),
         tile_peaks: graph.buffer("photons.tile_peaks", tile_count),
         state: graph.buffer("photons.splat_state", STATE_WORDS),
