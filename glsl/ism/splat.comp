@@ -34,45 +34,49 @@ const float LEAST_EXTENT = 0.4;
 
 // A point in the frame of a map (glsl/ism/map.glsl).
 struct Disc {
-    vec3 position;
-    vec3 plane;
-    float least_angle;
+    vec3 toward;        // unit
+    vec3 plane;         // n/(n·p): the inverse distance along ω is plane·ω
+    float distance;
+    float least_cosine;
     ivec2 low;   // texels that it may cover
     ivec2 size;  // 0: none
 };
 
 Disc disc_of_point(vec4 point, Vpl vpl, float radius) {
-    vec3 normal = normalize(vpl.normal);
-    Disc disc;
-    disc.position = to_map_frame(normal, point.xyz - vpl.position_rs);
-    disc.plane = to_map_frame(normal, normalize(unpack_direction_in_float_unnormalized(point.w)));
-    float distance = length(disc.position);
+    vec3 normal = vpl.normal * inversesqrt(dot(vpl.normal, vpl.normal));
+    vec3 position = to_map_frame(normal, point.xyz - vpl.position_rs);
+    vec3 plane = to_map_frame(normal, normalize(unpack_direction_in_float_unnormalized(point.w)));
+    float height = dot(plane, position);
     float resolution = float(push.resolution);
-    float above = distance + disc.position.z;
-    vec2 center = disc.position.xy / max(above, 1e-20);
+    Disc disc;
+    disc.distance = max(length(position), 1e-20);
+    disc.toward = position / disc.distance;
+    disc.plane = plane / height;
+    float above = disc.distance + position.z;
+    vec2 center = position.xy / max(above, 1e-20);
     float spread = 1.0 + dot(center, center);
-    disc.least_angle = LEAST_EXTENT * 4.0 / (resolution * spread);
-    float extent = max(min(radius / distance, 2.0) * 0.6 * spread, 2.2 * LEAST_EXTENT / resolution);
+    float least_angle = LEAST_EXTENT * 4.0 / (resolution * spread);
+    disc.least_cosine = 1.0 - 0.5 * least_angle * least_angle;
+    float extent = max(min(radius / disc.distance, 4.0) * 0.52 * spread, 2.2 * LEAST_EXTENT / resolution);
     ivec2 last = ivec2(int(push.resolution) - 1);
     disc.low = clamp(ivec2(floor((0.5 * (center - extent) + 0.5) * resolution)), ivec2(0), last);
     ivec2 high = clamp(ivec2(floor((0.5 * (center + extent) + 0.5) * resolution)), ivec2(0), last);
     // Below the map, or so close to edge-on that it hides nothing: the VPL's own surface is.
-    bool hides = point.w > 0.0 && max3(vpl.strength) > 0.0 && above > 0.3 * distance
-                 && abs(dot(disc.plane, disc.position)) > 0.01 * distance;
+    bool hides = point.w > 0.0 && max3(vpl.strength) > 0.0 && above > 0.3 * disc.distance && abs(height) > 0.01 * disc.distance;
     disc.size = hides ? high - disc.low + 1 : ivec2(0);
     return disc;
 }
 
-void draw_texel(uint first, ivec2 texel, vec3 position, vec3 plane, float least_angle, float radius) {
+void draw_texel(uint first, ivec2 texel, vec3 toward, vec3 plane, float distance, float least_cosine, float radius) {
     vec3 direction = direction_of_map(center_of_texel(texel, float(push.resolution)));
-    float nearness = inversesqrt(dot(position, position));
-    float inverse = dot(plane, direction) / dot(plane, position);
-    vec3 off = direction - inverse * position;
-    vec3 apart = direction - nearness * position;
-    bool covered = dot(off, off) <= radius * radius * inverse * inverse || dot(apart, apart) <= least_angle * least_angle;
-    if (inverse > 0.0 && covered) {
+    float inverse = dot(plane, direction);
+    float cosine = dot(direction, toward);
+    // The way from the point to where the direction meets its plane, over the distance of that, squared.
+    float share = inverse * distance;
+    float off = 1.0 + share * (share - 2.0 * cosine);
+    if (inverse > 0.0 && (off <= radius * radius * inverse * inverse || cosine >= least_cosine)) {
         uint place = first + uint(texel.y) * push.resolution + uint(texel.x);
-        atomicMax(drawn[place], floatBitsToUint(min(inverse, 2.0 * nearness)));
+        atomicMax(drawn[place], floatBitsToUint(min(inverse, 2.0 / distance)));
     }
 }
 
@@ -89,26 +93,25 @@ void main() {
         }
         Disc disc = disc_of_point(point, vpl, radius);
         bool large = max(disc.size.x, disc.size.y) > 2;
-        if (!large) {
-            for (int y = 0; y < disc.size.y; ++y) {
-                for (int x = 0; x < disc.size.x; ++x) {
-                    draw_texel(first, disc.low + ivec2(x, y), disc.position, disc.plane, disc.least_angle, radius);
-                }
-            }
+        int small = large ? 0 : disc.size.x * disc.size.y;
+        for (int index = 0; index < small; ++index) {
+            ivec2 within = disc.size.x == 2 ? ivec2(index & 1, index >> 1) : ivec2(0, index);
+            draw_texel(first, disc.low + within, disc.toward, disc.plane, disc.distance, disc.least_cosine, radius);
         }
         uvec4 waiting = subgroupBallot(large);
         while (subgroupBallotBitCount(waiting) > 0u) {
             uint lane = subgroupBallotFindLSB(waiting);
             waiting[lane >> 5] &= waiting[lane >> 5] - 1u;
-            vec3 position = vec3(
-                subgroupShuffle(disc.position.x, lane), subgroupShuffle(disc.position.y, lane), subgroupShuffle(disc.position.z, lane));
+            vec3 toward =
+                vec3(subgroupShuffle(disc.toward.x, lane), subgroupShuffle(disc.toward.y, lane), subgroupShuffle(disc.toward.z, lane));
             vec3 plane =
                 vec3(subgroupShuffle(disc.plane.x, lane), subgroupShuffle(disc.plane.y, lane), subgroupShuffle(disc.plane.z, lane));
-            float least_angle = subgroupShuffle(disc.least_angle, lane);
+            float distance = subgroupShuffle(disc.distance, lane);
+            float least_cosine = subgroupShuffle(disc.least_cosine, lane);
             ivec2 low = ivec2(subgroupShuffle(disc.low.x, lane), subgroupShuffle(disc.low.y, lane));
             ivec2 size = ivec2(subgroupShuffle(disc.size.x, lane), subgroupShuffle(disc.size.y, lane));
             for (int index = int(gl_SubgroupInvocationID); index < size.x * size.y; index += int(gl_SubgroupSize)) {
-                draw_texel(first, low + ivec2(index % size.x, index / size.x), position, plane, least_angle, radius);
+                draw_texel(first, low + ivec2(index % size.x, index / size.x), toward, plane, distance, least_cosine, radius);
             }
         }
     }
