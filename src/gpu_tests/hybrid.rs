@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer};
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, quad, request, view};
 use super::session::Session;
-use crate::renderer::{ColorImage, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
+use crate::renderer::{ColorImage, Frame, FrameRequest, PassTiming, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, LightKind, Material, Scene};
 
 const INDIRECT: [Slot; 2] = [Slot::Diffuse, Slot::Caustics];
@@ -74,8 +74,9 @@ fn ran(frame: &Frame, piece: &str) -> bool {
     frame.timings.passes.iter().any(|pass| pass.skipped.is_none() && pass.piece.starts_with(piece))
 }
 
-fn reason<'f>(frame: &'f Frame, piece: &str) -> Option<&'f str> {
-    frame.timings.passes.iter().find(|pass| pass.piece.starts_with(piece))?.skipped.as_deref()
+fn reason<'f>(frame: &'f Frame, name: &str) -> Option<&'f str> {
+    let named = |pass: &&PassTiming| format!("{}/{}", pass.piece, pass.pass).starts_with(name);
+    frame.timings.passes.iter().find(named)?.skipped.as_deref()
 }
 
 #[test]
@@ -102,8 +103,9 @@ fn nothing_runs_again_where_nothing_moved() {
             let request = everything(&scene, [48, 40]);
             let first = renderer.render(&scene, &request).expect("a frame");
             let second = renderer.render(&scene, &request).expect("a frame");
-            let again: Vec<_> = second.timings.passes.iter().filter(|pass| pass.skipped.is_none()).collect();
-            assert!(again.is_empty(), "{name}, {settings:?}: {again:?}");
+            let again = second.timings.passes.iter().filter(|pass| pass.skipped.is_none());
+            let again: Vec<_> = again.map(|pass| &pass.pass).collect();
+            assert!(again.is_empty(), "{name}, {:?}: {again:?}", settings.options());
             assert_eq!(first.slots, second.slots);
         }
     }

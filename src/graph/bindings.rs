@@ -64,6 +64,11 @@ impl ImageRef {
         ReadWriteImage(self.access(ImageUse::StorageModify))
     }
 
+    /// Every texel is written before it is read; what was there before does not matter.
+    pub(crate) fn write_then_read(self) -> ReadWriteImage {
+        ReadWriteImage(self.access(ImageUse::StorageWrite))
+    }
+
     pub(super) fn access(self, usage: ImageUse) -> Access {
         Access::Image { image: self.id, mips: self.mips.0..self.mips.1, usage }
     }
@@ -111,6 +116,11 @@ impl<T> BufferRef<T> {
 
     pub(crate) fn read_write(self) -> ReadWriteBuffer<T> {
         ReadWriteBuffer(self.access(BufferUse::Modify), PhantomData)
+    }
+
+    /// Every element is written before it is read; what was there before does not matter.
+    pub(crate) fn write_then_read(self) -> ReadWriteBuffer<T> {
+        ReadWriteBuffer(self.access(BufferUse::Write), PhantomData)
     }
 
     /// As texels of `format`, the fastest way to read a list in an inner loop on the software driver.

@@ -43,14 +43,14 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
     let pass = BlockSums {
         views: lights.views.clone(),
         blocks: blocks.sampled(),
-        sums: sums.read_write(),
+        sums: sums.write_then_read(),
         view_fluxes: view_fluxes.write(),
     };
     graph.pass("diffuse/vpl/block-sums", pass).groups([view_count, 1, 1]);
 
     let pass = Share {
         view_fluxes: view_fluxes.read(),
-        shares: shares.read_write(),
+        shares: shares.write_then_read(),
         push: SharePush { view_count, vpl_count },
     };
     graph.pass("diffuse/vpl/share", pass).note("views", u64::from(view_count)).groups([1, 1, 1]);
