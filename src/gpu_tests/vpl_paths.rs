@@ -7,6 +7,7 @@ use super::probe::{Vpl, probe};
 use super::scenes::{add_light, builtin, closed_box, floor, lambert, request, view, vpl_settings};
 use super::session::Session;
 use crate::frame::twins;
+use crate::renderer::{FrameRequest, Timing};
 use crate::scene::{LightKind, Scene};
 
 /// The VPLs of all bounces, bounce by bounce.
@@ -97,5 +98,30 @@ fn one_light_or_textures_do_and_repeats_give_the_same_bits() {
             texels.flat_map(|texel| texel.to_array().map(f32::to_bits)).collect()
         };
         assert!(bits() == bits(), "{name}: other bits");
+    }
+}
+
+/// What the light views leave unchanged stands: VPLs, paths and maps when the camera moves, everything when nothing does.
+#[test]
+fn what_did_not_change_does_not_run() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    for visibility in ["ism", "traced"] {
+        let settings = vpl_settings(&[("vpl.visibility", visibility), ("vpl.count", "16"), ("vpl.bounces", "2")]);
+        let mut renderer = session.renderer(&settings);
+        let mut request = request([24, 16], scene.camera_view(None).expect("its camera"), &[]);
+        request.timing = Timing::Passes;
+        let mut ran = |request: &FrameRequest| -> Vec<String> {
+            let frame = renderer.render(&scene, request).expect("a frame");
+            let passes = frame.timings.passes.into_iter().filter(|pass| pass.skipped.is_none());
+            passes.map(|pass| pass.pass).collect()
+        };
+        assert!(ran(&request).iter().any(|pass| pass.starts_with("path-vpls")));
+        assert!(ran(&request).is_empty(), "{visibility}");
+        request.camera.world.translation += DVec3::new(0.05, 0.0, 0.0);
+        let moved = ran(&request);
+        assert!(moved.iter().any(|pass| pass.starts_with("gather")), "{visibility}: {moved:?}");
+        let stands = |pass: &String| !pass.starts_with("path-") && !pass.starts_with("ism-") && pass != "vpls";
+        assert!(moved.iter().all(stands), "{visibility}: {moved:?}");
     }
 }
