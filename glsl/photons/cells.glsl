@@ -1,11 +1,15 @@
 // Cells of a light view's texel: where its photons sit, if it has several. The including shader declares `sampler2D mask`,
 // `sampler2D light_depth` and `usampler2D specular_surface`.
 
+bool is_in_view(LightView view, ivec2 texel) {
+    ivec2 low = view.rect_origin;
+    return all(greaterThanEqual(texel, low)) && all(lessThan(texel, low + view.rect_size));
+}
+
 // The depth of the texel one step further, if the surface goes on there; else 0.
 float depth_of_neighbor(LightView view, ivec2 texel, ivec2 step, float depth, vec3 normal) {
     ivec2 next = texel + step;
-    ivec2 low = view.rect_origin;
-    if (any(lessThan(next, low)) || any(greaterThanEqual(next, low + view.rect_size)) || texelFetch(mask, next, 0).x <= 0.0) {
+    if (!is_in_view(view, next) || texelFetch(mask, next, 0).x <= 0.0) {
         return 0.0;
     }
     float next_depth = texelFetch(light_depth, next, 0).x;

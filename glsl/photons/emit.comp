@@ -98,13 +98,16 @@ Place draw_texel(uint level, ivec2 block, float random) {
 // Where the light's ray a step of tangents further meets the plane of the surface.
 vec3 position_on_plane(LightView view, CellPoint point, vec2 step, vec3 normal) {
     vec2 tangent = point.tangent + step;
-    return position_of_texel(view, tangent, depth_of_plane(view, point.tangent, tangent, point.depth, normal));
+    float depth = depth_of_plane(view, point.tangent, tangent, point.depth, normal);
+    // Seen edge-on, the plane runs off to infinity.
+    depth = is_orthographic(view) ? depth : clamp(depth, 0.5 * point.depth, 2.0 * point.depth);
+    return position_of_texel(view, tangent, depth);
 }
 
 // The shading normal of a neighbour; that of the texel itself where the neighbour is of another surface, or where the surface is of flat
 // facets: the neighbour's shading normal is then its triangle's.
-vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
-    if (texelFetch(specular_layer, texel, 0).y != material || texelFetch(mask, texel, 0).x <= 0.0) {
+vec3 normal_beside(LightView view, ivec2 texel, uint material, vec3 own) {
+    if (!is_in_view(view, texel) || texelFetch(specular_layer, texel, 0).y != material || texelFetch(mask, texel, 0).x <= 0.0) {
         return own;
     }
     uvec2 normals = texelFetch(specular_surface, texel, 0).xy;
@@ -113,16 +116,17 @@ vec3 normal_beside(ivec2 texel, uint material, vec3 own) {
 }
 
 // The change of the shading normal from one texel to the next along `step`, from those on both sides that are of the same surface.
-vec3 normal_change(ivec2 texel, ivec2 step, uint material, vec3 own) {
-    vec3 after = normal_beside(texel + step, material, own);
-    vec3 before = normal_beside(texel - step, material, own);
+vec3 normal_change(LightView view, ivec2 texel, ivec2 step, uint material, vec3 own) {
+    vec3 after = normal_beside(view, texel + step, material, own);
+    vec3 before = normal_beside(view, texel - step, material, own);
     float sides = float(after != own) + float(before != own);
     return (after - before) / max(sides, 1.0);
 }
 
 // Whether the surface ends beside the texel: its photons then crowd on one side of it (photons/cells.glsl).
-bool is_outline(ivec2 texel, ivec2 step) {
-    return min(texelFetch(mask, texel + step, 0).x, texelFetch(mask, texel - step, 0).x) <= 0.0;
+bool is_outline(LightView view, ivec2 texel, ivec2 step) {
+    bool whole = is_in_view(view, texel + step) && is_in_view(view, texel - step);
+    return !whole || min(texelFetch(mask, texel + step, 0).x, texelFetch(mask, texel - step, 0).x) <= 0.0;
 }
 
 void main() {
@@ -183,10 +187,10 @@ void main() {
         vec3 origins = position_on_plane(view, point, step, face) - position_on_plane(view, point, -step, face);
         vec3 directions = normalize(ray_of_tangent(view, point.tangent + step)) - normalize(ray_of_tangent(view, point.tangent - step));
         ivec2 beside = ivec2(axis == 0, axis == 1);
-        float apart = is_outline(texel, beside) ? max(spacing, 1.0) : spacing;
+        float apart = is_outline(view, texel, beside) ? max(spacing, 1.0) : spacing;
         origin_change[axis] = origins * (0.5 * apart);
         direction_change[axis] = directions * (0.5 * apart);
-        vec3 change = normal_change(texel, beside, layer.y, own);
+        vec3 change = normal_change(view, texel, beside, layer.y, own);
         normals[axis] = change * apart;
         // Within the texel the normal turns as it does from one to the next.
         bent += change * (dot(point.tangent - middle, step) / dot(step, step));

@@ -15,5 +15,7 @@ void main() {
     bool met = hit.x != HIT_NONE;
     hit = met ? hit : uvec4(0u);
     Landing landing = arrive(met ? index : 0u, hit);
+    // What the factor calls metal may be none where the texture says so; the pixel that the photon lands on knows.
+    landing.may_diffuse = (landing.material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u;
     land(met, landing, material_factors(landing.material, vec4(1.0)));
 }

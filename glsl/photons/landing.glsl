@@ -49,6 +49,7 @@ struct Landing {
     vec3 normal;        // geometric, on the arriving side
     vec3 shading_normal;
     Beam beam;          // at the surface
+    bool may_diffuse;   // some texture that is not known here decides about its diffuse lobe
     float spread;       // standard deviation in one dimension that the lobe gives it there, m
     bool front;
     Material material;
@@ -63,6 +64,7 @@ Landing arrive(uint index, uvec4 hit) {
     landing.material = load_material(materials, hit.z);
     landing.normal = landing.front ? face : -face;
     landing.shading_normal = landing.normal;
+    landing.may_diffuse = false;
     landing.photon.origin_rs += landing.photon.direction * distance;
     Beam beam = load_beam(beams, int(RAY_BEAM_TEXELS * index));
     beam.origin_u += distance * beam.direction_u;
@@ -91,8 +93,9 @@ Ellipse footprint(Landing landing) {
     float share = lobe_in_disc(unpackHalf2x16(landing.photon.bits >> 16).x);
     float drawn = landing.spread * (1.0 - share) * inversesqrt(emitted);
     Ellipse ellipse = ellipse_of(landing.beam, landing.normal, push.disc_scale, landing.spread * share, drawn);
-    ellipse.larger = clamp(ellipse.larger, least, most);
-    ellipse.smaller.w = clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger);
+    // Comparisons with what is no number are false.
+    ellipse.larger = ellipse.larger < most ? max(ellipse.larger, least) : most;
+    ellipse.smaller.w = ellipse.smaller.w < ellipse.larger ? max(ellipse.smaller.w, ellipse.larger / 32.0) : ellipse.larger;
     return ellipse;
 }
 
@@ -103,7 +106,7 @@ void land(bool met, Landing landing, MaterialPoint point) {
     Lobes lobes = lobes_of_material(material, point);
     bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
     bool carries = met && max3(photon.flux) > 0.0;
-    bool lands = carries && max3(lobes.diffuse_albedo) > 0.0;
+    bool lands = carries && (landing.may_diffuse || max3(lobes.diffuse_albedo) > 0.0);
     uint place;
     APPEND(counts, push.landed_stage, lands, place)
     if (lands && place < push.landed_capacity) {

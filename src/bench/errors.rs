@@ -8,7 +8,8 @@ use super::report::{ImageErrors, Reference as Compared, Run};
 use super::run::{Finished, SlotImages, Subject};
 use crate::metrics::{self, MetricsError};
 use crate::reference::{
-    Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, estimator_name, sum,
+    Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, caustics_name,
+    estimator_name, sum,
 };
 use crate::renderer::{ColorImage, Context, Settings, Slot};
 
@@ -85,16 +86,18 @@ impl<'a> References<'a> {
         let filled = indirect.filter(|slot| settings.methods.fills(*slot));
         let limits = filled.map(|slot| (slot.name().to_owned(), settings.light_paths(slot).0));
         let slot_bounces: BTreeMap<String, Option<u32>> = limits.filter(|(_, limit)| *limit != bounces).collect();
-        let compared = |spp, bounces, slot_bounces| Compared {
+        let compared = |spp, bounces, caustics, slot_bounces| Compared {
             technique: estimator_name(Estimator::Path).to_owned(),
             spp,
             bounces,
+            caustics: caustics_name(caustics).to_owned(),
             slot_bounces,
         };
+        let equal_caustics = settings.light_paths(Slot::Caustics).1;
         let run = std::mem::take(&mut finished.run);
         finished.run = Run {
-            reference: Some(compared(equal.spp, bounces, slot_bounces)),
-            reference_full: Some(compared(full.spp, None, BTreeMap::new())),
+            reference: Some(compared(equal.spp, bounces, equal_caustics, slot_bounces)),
+            reference_full: Some(compared(full.spp, None, CausticPaths::All, BTreeMap::new())),
             error: Some(error),
             error_full: Some(error_full),
             noise: Some(noise),
@@ -226,8 +229,8 @@ mod tests {
 
         let run = &runs[0];
         let compared = |bounces| {
-            let slot_bounces = BTreeMap::new();
-            Some(Compared { technique: "path".to_owned(), spp: 64, bounces, slot_bounces })
+            let caustics = "all".to_owned();
+            Some(Compared { technique: "path".to_owned(), spp: 64, bounces, caustics, ..Compared::default() })
         };
         assert_eq!((run.reference.clone(), run.reference_full.clone()), (compared(Some(1)), compared(None)));
         let (error, error_full) = (run.error.as_ref().expect("compared"), run.error_full.as_ref().expect("compared"));

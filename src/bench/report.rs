@@ -176,6 +176,9 @@ pub struct Reference {
     pub spp: u32,
     /// Scatterings between the light and the first visible surface; null if they are not limited.
     pub bounces: Option<u32>,
+    /// Which light its slot `caustics` shows: all, or that of specular paths alone.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub caustics: String,
     /// The limits of slots that have another one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub slot_bounces: BTreeMap<String, Option<u32>>,
@@ -252,8 +255,7 @@ mod tests {
     fn a_report_reads_back() {
         let mut report = Report::new(&DeviceReport::default());
         let errors = BTreeMap::from([("image".to_owned(), ImageErrors { rmse: 0.1, ..ImageErrors::default() })]);
-        let reference =
-            Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1), slot_bounces: BTreeMap::new() };
+        let reference = Reference { technique: "path".to_owned(), spp: 1024, bounces: Some(1), ..Reference::default() };
         report.runs.push(Run { reference: Some(reference), error: Some(errors), ..example_run() });
         report.failures.push(Failure {
             scene: "a".to_owned(),

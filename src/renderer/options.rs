@@ -157,7 +157,7 @@ choices! {
 choices! {
     /// How photons become irradiance.
     PhotonSplatting {
-        /// The faster of `discs` and `tiles` for the type of device.
+        /// The faster one: `tiles` on all devices that were measured.
         Auto = "auto",
         /// A disc a photon, drawn: the paper.
         Discs = "discs",
@@ -221,7 +221,8 @@ impl<'de> Deserialize<'de> for PhotonGeometry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhotonSettings {
-    /// Photons that leave the specular surfaces which lights see, at most; 0 to 4194304. Cost: linear.
+    /// Photons that leave the specular surfaces which lights see, at most; 0 to 4194304, of which buffers of 128 MiB hold 1.68 million, or 2.8
+    /// million over `bounces` if that is less. Cost: linear.
     pub max: u32,
     /// Specular reflections and refractions of a photon at most; 0 (no caustics) to 16.
     pub bounces: u32,
@@ -244,6 +245,7 @@ pub struct PhotonSettings {
     /// What decides the radius of its disc.
     pub footprint: PhotonFootprint,
     /// C₀ of the radius; 0.01 to 100. `way`: h = C₀·√(A/N)·d/(R·√cosθ), A the scene's area in m², N the photons' number, d the way from the
-    /// light in metres, R the scene's radius, θ the angle of incidence. `beam`: h = C₀·√(8a/(π·cosθ)), a the area between neighbours.
+    /// light in metres, R the scene's radius, θ the angle of incidence. `beam`: h = C₀·√2·s along each axis of an
+    /// ellipse, s the way to the neighbouring photon, wider by what the lobe spreads.
     pub radius: f64,
 }

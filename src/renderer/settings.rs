@@ -339,7 +339,7 @@ impl Settings {
                 shadow: ShadowSettings { filter_radius: 2, ..default.shadow },
                 traced: TracedSettings { samples: 16 },
                 rsm: RsmSettings { vpls: 1024 },
-                vpl: VplSettings { count: 512, bounces: 4, visibility: VplVisibility::Traced, ..default.vpl },
+                vpl: VplSettings { count: 320, bounces: 8, visibility: VplVisibility::Traced, ..default.vpl },
                 photons: PhotonSettings { max: 200_000, bounces: 4, ..default.photons },
                 path: PathSettings { spp: 256, ..default.path },
                 ..default
@@ -349,9 +349,10 @@ impl Settings {
             Preset::Paper => Settings {
                 lights: LightSettings { resolution: 512, ..lights },
                 rsm: RsmSettings { vpls: 400 },
-                vpl: VplSettings { count: 256, ..default.vpl },
+                vpl: VplSettings { count: 256, shading: VplShading::Stencil, ..default.vpl },
                 photons: PhotonSettings {
                     max: 38_146,
+                    bounces: 1,
                     trace: PhotonTracing::Lines,
                     projection: ListProjection::Camera,
                     splat: PhotonSplatting::Discs,

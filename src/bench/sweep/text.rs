@@ -25,14 +25,19 @@ pub fn scene_text(sweep: &Sweep, scene: &str) -> String {
     out
 }
 
+/// The columns of a sweep that has references.
+const ERROR_COLUMNS: [&str; 4] = ["rrmse equal", "rrmse full", "flip", "Pareto"];
+
 fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
-    let columns = sweep.grid.columns.keys().map(|name| format!("{name} ms"));
-    let header: Vec<String> = ["series", "values"].map(str::to_owned).into_iter().chain(columns).collect();
-    let header =
-        header.into_iter().chain(["frame ms", "rrmse equal", "rrmse full", "flip", "Pareto"].map(str::to_owned));
-    let header: Vec<String> = header.collect();
-    let numbers: Vec<usize> = (2..header.len() - 1).collect();
-    let mut table = table(&header.iter().map(String::as_str).collect::<Vec<_>>(), &numbers);
+    let columns: Vec<String> = sweep.grid.columns.keys().map(|name| format!("{name} ms")).collect();
+    let mut header = vec!["series", "values"];
+    header.extend(columns.iter().map(String::as_str));
+    header.push("frame ms");
+    if sweep.grid.reference.is_some() {
+        header.extend(ERROR_COLUMNS);
+    }
+    let numbers: Vec<usize> = (2..3 + columns.len() + ERROR_COLUMNS.len() - 1).collect();
+    let mut table = table(&header, &numbers);
     for line in lines {
         for mark in &line.marks {
             table.add_row(point_cells(sweep, mark));
@@ -53,7 +58,7 @@ fn column_ms(run: &Run, beginnings: &[String]) -> f64 {
         let name = format!("{}/{}", row.piece, row.pass);
         beginnings.iter().any(|beginning| name.starts_with(beginning))
     };
-    run.passes.iter().filter(is_of).map(|row| row.ms.median).sum()
+    run.passes.iter().filter(is_of).fold(0.0, |sum, row| sum + row.ms.median)
 }
 
 fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
@@ -64,15 +69,18 @@ fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
     let theirs = |column: &str| published.and_then(|ms| ms.get(column)).copied();
     let columns = sweep.grid.columns.iter();
     let columns = columns.map(|(name, passes)| time_cell(column_ms(&measured.run, passes), theirs(name)));
-    let rest = [
-        time_cell(mark.time_ms, theirs(FRAME_COLUMN)),
-        optional(errors(Compare::Equal).map(|errors| errors.rrmse)),
-        optional(errors(Compare::Full).map(|errors| errors.rrmse)),
-        optional(errors(sweep.grid.compare).map(|errors| errors.flip)),
-        if mark.pareto { "*" } else { "" }.to_owned(),
-    ];
-    let leading = [measured.series.clone(), values.collect::<Vec<_>>().join(", ")];
-    leading.into_iter().chain(columns).chain(rest).collect()
+    let mut cells = vec![measured.series.clone(), values.collect::<Vec<_>>().join(", ")];
+    cells.extend(columns);
+    cells.push(time_cell(mark.time_ms, theirs(FRAME_COLUMN)));
+    if sweep.grid.reference.is_some() {
+        cells.extend([
+            optional(errors(Compare::Equal).map(|errors| errors.rrmse)),
+            optional(errors(Compare::Full).map(|errors| errors.rrmse)),
+            optional(errors(sweep.grid.compare).map(|errors| errors.flip)),
+            if mark.pareto { "*" } else { "" }.to_owned(),
+        ]);
+    }
+    cells
 }
 
 fn lines_table(lines: &[Line<'_>]) -> String {

@@ -57,6 +57,10 @@ pub(crate) struct PhotonInputs<'a> {
 
 /// Declares the method's passes in the order in which they run; returns the slot.
 pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
+    if inputs.settings.trace == PhotonTracing::Bvh && inputs.traced.is_none() {
+        graph.skip("caustics/photons", "no scene to trace photons through");
+        return None;
+    }
     let traced = trace_all(graph, inputs);
     let splatted = SplatInputs { buffer: inputs.buffer, settings: inputs.settings, length: inputs.data.radius };
     Some(splat(graph, &splatted, &traced.landed))
@@ -107,15 +111,13 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     for stage in 0..stages {
         rays = PhotonRays { stage, ..all_rays };
         emit::scatter(graph, inputs, &choice, arrivals, &rays);
-        match (settings.trace, through, lists) {
-            (PhotonTracing::Lines, _, Some(lists)) => lines::trace(graph, &lists, &rays, choice.counts),
-            (PhotonTracing::March, _, Some(lists)) => {
-                march::trace(graph, &lists, &rays, choice.counts);
+        match (through, lists) {
+            (Some((traced, bindings)), _) => bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts),
+            (None, Some(lists)) if settings.trace == PhotonTracing::Lines => {
+                lines::trace(graph, &lists, &rays, choice.counts);
             }
-            (PhotonTracing::Bvh, Some((traced, bindings)), _) => {
-                bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts);
-            }
-            _ => graph.skip(&format!("caustics/photons/trace.{stage}"), "no scene to trace photons through"),
+            (None, Some(lists)) => drop(march::trace(graph, &lists, &rays, choice.counts)),
+            (None, None) => unreachable!("photons() has seen that there is something to trace through"),
         }
         land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));
     }

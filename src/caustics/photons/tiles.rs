@@ -44,7 +44,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         push: ScatterPush { stage: landed.stage as u32, tolerance: splat.tolerance },
     };
     graph
-        .pass("caustics/photons/scatter", pass)
+        .pass("caustics/photons/sort", pass)
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 
