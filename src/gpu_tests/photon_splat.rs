@@ -9,6 +9,7 @@ use super::session::Session;
 use super::splat_bench::{
     Bench, Landed, WAYS, from_above, largest, oblique, orthographic, random, settings, white_floor,
 };
+use crate::caustics::photons::sums::TILES_AT_ONCE;
 use crate::renderer::Timing;
 use crate::scene::Scene;
 
@@ -213,6 +214,31 @@ fn crowded_tiles_are_shared() {
         photons.reverse();
         assert!(light == bench.irradiance(&tiles, &photons), "the order shows");
         assert!(light == bench.irradiance(&discs, &photons), "the ways differ");
+        for tiles_at_once in [1, 4] {
+            bench.tiles_at_once = tiles_at_once;
+            assert!(light == bench.irradiance(&tiles, &photons), "crowded tiles, {tiles_at_once} at once");
+            assert!(light == bench.irradiance(&discs, &photons), "discs, {tiles_at_once} tiles at once");
+        }
+        bench.tiles_at_once = TILES_AT_ONCE;
+    }
+}
+
+/// The sums of all tiles of such a frame would be larger than a buffer may be.
+#[test]
+fn a_large_frame_fits_the_device() {
+    let session = Session::open();
+    let scene = white_floor();
+    let mut bench = Bench::new(&session, &scene, &from_above(), [3840, 2160]);
+    let photon =
+        |x: f64, y: f64| Landed { position: bench.on_floor(x, y), normal: DVec3::Y, flux: [1.0; 3], radius: 1e-3 };
+    let corners = [photon(10.5, 10.5), photon(3830.5, 2150.5)];
+    let photons: Vec<Landed> = corners.into_iter().cycle().take(70_000).collect();
+    let [tiles, discs] = WAYS.map(|way| settings(&[("splat", way), ("downscale", "1")]));
+    let one_each = bench.irradiance(&discs, &corners);
+    let many = bench.irradiance(&tiles, &photons);
+    for pixel in [10 * 3840 + 10, 2150 * 3840 + 3830] {
+        let ratio = many[pixel].x / one_each[pixel].x;
+        assert!((ratio / 35_000.0 - 1.0).abs() < 1e-5, "{ratio}");
     }
 }
 

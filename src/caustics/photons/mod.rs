@@ -8,6 +8,7 @@ mod bvh;
 mod choose;
 mod discs;
 mod emit;
+mod grid;
 mod land;
 mod layers;
 pub(crate) mod lines;
@@ -16,6 +17,7 @@ pub(crate) mod lists;
 pub(crate) mod march;
 pub(crate) mod records;
 pub(crate) mod splat;
+pub(crate) mod sums;
 mod tiles;
 mod upsample;
 mod views;
@@ -58,7 +60,12 @@ pub(crate) struct PhotonInputs<'a> {
 /// Declares the method's passes in the order in which they run; returns the slot.
 pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
     let traced = trace_all(graph, inputs);
-    let splatted = SplatInputs { buffer: inputs.buffer, settings: inputs.settings, length: inputs.data.radius };
+    let splatted = SplatInputs {
+        buffer: inputs.buffer,
+        settings: inputs.settings,
+        length: inputs.data.radius,
+        tiles_at_once: sums::TILES_AT_ONCE,
+    };
     Some(splat(graph, &splatted, &traced.landed))
 }
 
