@@ -22,8 +22,6 @@ layout(location = 1) flat out vec4 irradiance;   // W/m²; allowed height in m
 layout(location = 2) flat out vec4 disc_normal;  // 1/h²
 layout(location = 3) flat out vec3 squeeze;      // 1/m
 
-const uint NO_CELL = 0xFFFFFFFFu;
-
 void main() {
     int photon = gl_InstanceIndex;
     vec4 place = uintBitsToFloat(texelFetch(discs, 3 * photon));

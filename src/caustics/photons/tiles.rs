@@ -28,7 +28,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         cell_counts: splat.cell_counts.texels(WORDS),
         cell_starts: cell_starts.write(),
         sorted_count: sorted_count.read_write(),
-        push: ScanPush { row_count: grid.row_count, reserved: 0 },
+        push: ScanPush { row_count: grid.row_count },
     };
     graph.pass("caustics/photons/scan", pass).threads_indirect(splat.state, ROWS_WORD);
 
