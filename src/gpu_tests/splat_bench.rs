@@ -89,9 +89,9 @@ impl<'s> Bench<'s> {
         let read = graph.read_back(slot);
         let mut executed = graph.run(timing).expect("a frame");
         let bytes = executed.take(read);
-        let floats: Vec<f64> =
-            bytes.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])) * PI).collect();
-        let colors = floats.chunks_exact(4).map(|texel| DVec3::new(texel[0], texel[1], texel[2])).collect();
+        let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
+        let color = |[red, green, blue, _]: [f32; 4]| DVec3::new(red.into(), green.into(), blue.into()) * PI;
+        let colors = texels.into_iter().map(color).collect();
         (colors, executed.passes)
     }
 
