@@ -72,7 +72,7 @@ float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, fl
     float texel = view.texel * at.z;
     bool from_behind = facing > 0.0 && (ray.bits & PHOTON_INSIDE) == 0u;
     bool is_start = distance < START_TEXELS * texel && (from_behind || abs(height) < START_HEIGHT * texel);
-    bool in_column = max(off.x, off.y) <= width && at.z > 0.0;
+    bool in_column = max(off.x, off.y) < width && at.z > 0.0;
     return distance > 0.0 && in_column && !is_start ? distance : NO_HIT_DISTANCE;
 }
 
@@ -85,9 +85,10 @@ struct NodeHit {
 // Takes the nearer of two. Of nodes at the same distance the content decides, never the place in the list.
 void take_nearer(inout NodeHit nearest, float distance, uvec4 node) {
     bool nearer = distance < nearest.distance;
-    bool same = distance == nearest.distance;
-    nearest.normal = nearer ? node.y : same ? min(nearest.normal, node.y) : nearest.normal;
-    nearest.material = nearer ? node.w : same ? min(nearest.material, node.w) : nearest.material;
+    bool least = node.y < nearest.normal || (node.y == nearest.normal && node.w < nearest.material);
+    bool taken = nearer || (distance == nearest.distance && least);
+    nearest.normal = taken ? node.y : nearest.normal;
+    nearest.material = taken ? node.w : nearest.material;
     nearest.distance = min(nearest.distance, distance);
 }
 

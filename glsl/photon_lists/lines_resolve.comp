@@ -54,6 +54,9 @@ void main() {
         for (uint view = 0u; view < push.view_count; ++view) {
             search(view, ray, found, closest);
         }
+        if (closest.distance == NO_HIT_DISTANCE) {
+            hits[4u * index] = HIT_NONE;
+        }
         hits[4u * index + 1u] = closest.normal;
         hits[4u * index + 2u] = closest.material;
     }

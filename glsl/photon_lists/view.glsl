@@ -1,4 +1,4 @@
-// A view that per-pixel lists of the scene are drawn from (src/caustics/photons/views.rs): eight texels, rgba32f.
+// A view that per-pixel lists of the scene are drawn from (src/caustics/photons/list_views.rs): eight texels, rgba32f.
 #ifndef PHOTON_LISTS_VIEW
 #define PHOTON_LISTS_VIEW
 

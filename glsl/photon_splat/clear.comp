@@ -10,12 +10,15 @@ layout(set = 0, binding = 0) uniform usamplerBuffer state;
 layout(set = 0, binding = 1) uniform usamplerBuffer tiles;
 layout(set = 0, binding = 2) writeonly buffer SumBlock { uint sums[]; };
 
-layout(push_constant, scalar) uniform Push { uint list; } push;
+layout(push_constant, scalar) uniform Push {
+    uint list;
+    ivec2 range;  // of tiles
+} push;
 
 void main() {
-    int tile = listed_tile(state, tiles, push.list);
+    int tile = tile_in_range(listed_tile(state, tiles, push.list), push.range);
     if (tile != NO_TILE) {
-        int first = 8 * TILE_SAMPLES * tile;
+        int first = 8 * TILE_SAMPLES * (tile - push.range.x);
         for (int word = int(gl_LocalInvocationIndex); word < 8 * TILE_SAMPLES; word += 64) {
             sums[first + word] = 0u;
         }

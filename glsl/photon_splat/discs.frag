@@ -22,6 +22,7 @@ layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     float tolerance;
+    ivec2 range;  // of tiles
 } push;
 
 layout(location = 0) flat in vec3 center;
@@ -31,15 +32,18 @@ layout(location = 3) flat in vec3 squeeze;
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
+    ivec2 size = lattice_size(push.image_size, push.downscale);
+    ivec2 tile = place / TILE_SIDE;
+    int index = tile.y * tiles_a_row(size) + tile.x;
+    if (index < push.range.x || index >= push.range.y) {
+        return;
+    }
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
     Receiver receiver = load_receiver(camera, depth, surface, pixel, push.image_size);
     vec3 offset = receiver.position_rs - center;
     float weight = disc_weight(offset, receiver.normal, disc_normal.xyz, disc_normal.w, squeeze, irradiance.w);
     if (receiver.valid && weight > 0.0) {
-        ivec2 size = lattice_size(push.image_size, push.downscale);
-        ivec2 tile = place / TILE_SIDE;
-        int index = tile.y * tiles_a_row(size) + tile.x;
         float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x));
-        add_to_sums(TILE_SAMPLES * index + index_in_tile(place), to_fixed(irradiance.xyz * scale, weight), uvec3(0u));
+        add_to_sums(TILE_SAMPLES * (index - push.range.x) + index_in_tile(place), to_fixed(irradiance.xyz * scale, weight), uvec3(0u));
     }
 }

@@ -14,14 +14,13 @@ layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     float tolerance;
+    ivec2 range;
 } push;
 
 layout(location = 0) flat out vec3 center;       // render space
 layout(location = 1) flat out vec4 irradiance;   // W/m²; allowed height in m
 layout(location = 2) flat out vec4 disc_normal;  // 1/h²
 layout(location = 3) flat out vec3 squeeze;      // 1/m
-
-const uint NO_CELL = 0xFFFFFFFFu;
 
 void main() {
     int photon = gl_InstanceIndex;
@@ -39,7 +38,7 @@ void main() {
         vec2 size = vec2(lattice_size(push.image_size, push.downscale));
         vec2 low = clamp(extent.center - extent.radius, vec2(0.0), size);
         vec2 high = clamp(extent.center + extent.radius, vec2(0.0), size);
-        // Corners 0 1 2 2 1 3 of two triangles.
+        // Corners 3 1 2 and 2 1 0: two triangles.
         uint corner = 0x312210u >> (4u * (5u - gl_VertexIndex)) & 3u;
         vec2 position = vec2((corner & 1u) != 0u ? high.x : low.x, (corner & 2u) != 0u ? high.y : low.y);
         gl_Position = vec4(2.0 * position / size - 1.0, 0.0, 1.0);

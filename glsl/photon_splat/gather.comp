@@ -44,6 +44,7 @@ layout(push_constant, scalar) uniform Push {
     int downscale;
     int level_count;
     uint has_specular;
+    ivec2 range;  // of tiles, if crowded
 } push;
 
 // Four samples an invocation, which share the loads of a photon.
@@ -134,7 +135,8 @@ void store(ivec2 place, vec3 irradiance) {
 
 void main() {
     int tile = CROWDED != 0u
-        ? listed_tile(state, tiles, STATE_CROWDED, gl_WorkGroupID.z) : listed_tile(state, tiles, STATE_TILES, gl_WorkGroupID.y);
+        ? tile_in_range(listed_tile(state, tiles, STATE_CROWDED, gl_WorkGroupID.z), push.range)
+        : listed_tile(state, tiles, STATE_TILES, gl_WorkGroupID.y);
     if (CROWDED != 0u) {
         first_taken = int(gl_WorkGroupID.y * PART_PHOTONS);
         end_taken = first_taken + int(PART_PHOTONS);
@@ -165,7 +167,7 @@ void main() {
             continue;
         }
         if (CROWDED != 0u) {
-            int index = TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which);
+            int index = TILE_SAMPLES * (tile - push.range.x) + index_in_tile(gl_LocalInvocationIndex, which);
             add_to_sums(index, sums_low[which], sums_high[which]);
         } else {
             store(place, from_fixed(sums_low[which], sums_high[which], scale));

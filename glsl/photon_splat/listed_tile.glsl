@@ -17,6 +17,11 @@ int listed_tile(usamplerBuffer state, usamplerBuffer tiles, uint list) {
     return listed_tile(state, tiles, list, gl_WorkGroupID.y);
 }
 
+// Sums are kept for a range of tiles at a time: the first, and the one after the last.
+int tile_in_range(int tile, ivec2 range) {
+    return tile >= range.x && tile < range.y ? tile : NO_TILE;
+}
+
 ivec2 sample_of_tile(int tile, ivec2 size, int which) {
     int columns = tiles_a_row(size);
     return TILE_SIDE * ivec2(tile % columns, tile / columns) + sample_of_invocation(gl_LocalInvocationIndex, which);

@@ -35,7 +35,6 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;  // metres that a photon may be off its surface
 } push;
 
-const uint NO_CELL = 0xFFFFFFFFu;
 const float LEAST_SAMPLES = 1.0;
 const float FEW_SAMPLES = 3.0;
 const float MOST_SAMPLES = 150.0;

@@ -22,6 +22,7 @@ layout(push_constant, scalar) uniform Push {
     int downscale;
     uint has_specular;
     uint list;
+    ivec2 range;  // of tiles
 } push;
 
 void resolve(int tile, int which) {
@@ -31,7 +32,7 @@ void resolve(int tile, int which) {
         return;
     }
     ivec2 pixel = pixel_of_sample(place, push.image_size, push.downscale);
-    int first = 2 * (TILE_SAMPLES * tile + index_in_tile(gl_LocalInvocationIndex, which));
+    int first = 2 * (TILE_SAMPLES * (tile - push.range.x) + index_in_tile(gl_LocalInvocationIndex, which));
     uvec4 low = texelFetch(sums, first);
     uvec4 high = texelFetch(sums, first + 1);
     float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x));
@@ -44,7 +45,7 @@ void resolve(int tile, int which) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles, push.list);
+    int tile = tile_in_range(listed_tile(state, tiles, push.list), push.range);
     if (tile != NO_TILE) {
         [[dont_unroll]] for (int which = 0; which < 4; ++which) {
             resolve(tile, which);

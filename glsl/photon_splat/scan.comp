@@ -13,10 +13,7 @@ layout(set = 0, binding = 1) uniform usamplerBuffer cell_counts;
 layout(set = 0, binding = 2) writeonly buffer StartBlock { uint cell_starts[]; };
 layout(set = 0, binding = 3) buffer SortedBlock { uint sorted_count[]; };
 
-layout(push_constant, scalar) uniform Push {
-    uint row_count;
-    uint reserved;
-} push;
+layout(push_constant, scalar) uniform Push { uint row_count; } push;
 
 shared uint sums[64];
 shared uint row_start;

@@ -23,8 +23,6 @@ layout(push_constant, scalar) uniform Push {
     float tolerance;
 } push;
 
-const uint NO_CELL = 0xFFFFFFFFu;
-
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= texelFetch(counts, int(STAGE_WORDS * push.stage + COUNT_WORD)).x) {

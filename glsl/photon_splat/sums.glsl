@@ -11,7 +11,7 @@ void add_to_sum(int word, uint low, uint high) {
     }
 }
 
-// `index`: of the sample in the list of all tiles' samples.
+// `index`: of the sample in the list of those of a range of tiles.
 void add_to_sums(int index, uvec3 low, uvec3 high) {
     add_to_sum(8 * index, low.x, high.x);
     add_to_sum(8 * index + 1, low.y, high.y);

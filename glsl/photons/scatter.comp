@@ -33,7 +33,6 @@ layout(push_constant, scalar) uniform Push {
     uint stage;
     uint capacity;
     uint beams_decide;  // 1: discs stand for lobes (photons/beam.glsl)
-    uint reserved;
 } push;
 
 // Directions nearer to the surface than this do not gain by the adjoint without bound.

@@ -206,3 +206,24 @@ fn a_frame_that_fails_leaves_the_next_one_sound() {
     assert!(error.contains("ramp/huge") && error.contains("limit"), "{error}");
     assert_eq!(digits(&mut store, [5, 6]), (7_123_456, 7));
 }
+
+#[test]
+fn buffers_grow_up_to_what_the_device_allows() {
+    let session = Session::open();
+    let mut store = session.store();
+    let most = store.device().limits().max_storage_buffer_range / 4;
+    let mut run = |needed: u32| {
+        let mut graph = Graph::new(&mut store);
+        let pool = graph.growing_buffer::<u32>("pool", 16);
+        let count = graph.buffer::<u32>("count", 1);
+        graph.fill_buffer("test/count", count, needed);
+        graph.grows(pool, count, 0);
+        (pool.count(), graph.run(Timing::Frame).map(|executed| executed.outgrown))
+    };
+    let failure = run(most + 1).1.expect_err("more than the device allows").to_string();
+    assert!(failure.starts_with("pool is larger than the device allows"), "{failure}");
+    let (count, outgrown) = run(most - 1);
+    assert_eq!((count, outgrown.expect("a frame")), (16, vec![("pool".to_owned(), [16, most as usize - 1])]));
+    let (count, outgrown) = run(most - 1);
+    assert_eq!((count, outgrown.expect("a frame")), (most as usize, vec![]));
+}

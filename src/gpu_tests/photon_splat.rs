@@ -9,6 +9,7 @@ use super::session::Session;
 use super::splat_bench::{
     Bench, Landed, WAYS, from_above, largest, oblique, orthographic, random, settings, white_floor,
 };
+use crate::caustics::photons::sums::TILES_AT_ONCE;
 use crate::renderer::Timing;
 use crate::scene::Scene;
 
@@ -213,6 +214,33 @@ fn crowded_tiles_are_shared() {
         photons.reverse();
         assert!(light == bench.irradiance(&tiles, &photons), "the order shows");
         assert!(light == bench.irradiance(&discs, &photons), "the ways differ");
+        for tiles_at_once in [1, 4] {
+            bench.tiles_at_once = tiles_at_once;
+            assert!(light == bench.irradiance(&tiles, &photons), "crowded tiles, {tiles_at_once} at once");
+            assert!(light == bench.irradiance(&discs, &photons), "discs, {tiles_at_once} tiles at once");
+        }
+        bench.tiles_at_once = TILES_AT_ONCE;
+    }
+}
+
+/// The sums of all tiles of such a frame would be larger than a buffer may be.
+#[test]
+fn a_large_frame_fits_the_device() {
+    const SIZE: [u32; 2] = [4096, 1040];
+    let session = Session::open();
+    let scene = white_floor();
+    let mut bench = Bench::new(&session, &scene, &from_above(), SIZE);
+    let lit = [[600, 10], [3500, 1030]];
+    let photons = lit.map(|pixel| {
+        let [x, y] = pixel.map(|place| f64::from(place) + 0.5);
+        Landed { position: bench.on_floor(x, y), normal: DVec3::Y, flux: [1.0; 3], radius: 0.05 }
+    });
+    let crowd: Vec<Landed> = photons.into_iter().cycle().take(70_000).collect();
+    let light = bench.irradiance(&settings(&[("splat", "tiles"), ("kernel", "cone"), ("downscale", "1")]), &crowd);
+    let expected = 35_000.0 * 3.0 / (PI * 0.05 * 0.05);
+    for [x, y] in lit {
+        let found = light[(y * SIZE[0] + x) as usize].x;
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} of {expected}");
     }
 }
 

@@ -8,6 +8,7 @@ use super::scenes::{floor, lambert, view};
 use super::session::Session;
 use crate::caustics::photons::records::LandedPhotons;
 use crate::caustics::photons::splat::{SplatInputs, splat};
+use crate::caustics::photons::sums::TILES_AT_ONCE;
 use crate::frame::camera::camera;
 use crate::frame::gbuffer::{View, gbuffer};
 use crate::frame::geometry::Geometry;
@@ -35,6 +36,7 @@ pub(super) struct Bench<'s> {
     pub(super) size: [u32; 2],
     /// The smaller radius of discs over the larger one, and the way that it points.
     pub(super) squeeze: (f64, DVec3),
+    pub(super) tiles_at_once: usize,
 }
 
 impl<'s> Bench<'s> {
@@ -43,7 +45,7 @@ impl<'s> Bench<'s> {
         let device = store.device().clone();
         let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
         let camera = camera(view, size, data.origin);
-        Bench { store, scene, data, camera, size, squeeze: (1.0, DVec3::X) }
+        Bench { store, scene, data, camera, size, squeeze: (1.0, DVec3::X), tiles_at_once: TILES_AT_ONCE }
     }
 
     /// π·L of a white diffuse surface, which is E, and the passes.
@@ -82,14 +84,14 @@ impl<'s> Bench<'s> {
             stage: 0,
             capacity: count + 1,
         };
-        let inputs = SplatInputs { buffer: &buffer, settings, length: 1.0 };
+        let inputs = SplatInputs { buffer: &buffer, settings, length: 1.0, tiles_at_once: self.tiles_at_once };
         let slot = splat(&mut graph, &inputs, &landed);
         let read = graph.read_back(slot);
         let mut executed = graph.run(timing).expect("a frame");
         let bytes = executed.take(read);
-        let floats: Vec<f64> =
-            bytes.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])) * PI).collect();
-        let colors = floats.chunks_exact(4).map(|texel| DVec3::new(texel[0], texel[1], texel[2])).collect();
+        let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
+        let color = |[red, green, blue, _]: [f32; 4]| DVec3::new(red.into(), green.into(), blue.into()) * PI;
+        let colors = texels.into_iter().map(color).collect();
         (colors, executed.passes)
     }
 

@@ -55,7 +55,6 @@ impl ImageRef {
     }
 
     /// Some texels are written; the others keep what they held.
-    #[allow(dead_code, reason = "volumes of the methods to come")]
     pub(crate) fn modify(self) -> WriteImage {
         WriteImage(self.access(ImageUse::StorageModify))
     }

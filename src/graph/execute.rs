@@ -22,14 +22,16 @@ use crate::vulkan::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ReadBack(pub(super) usize);
 
+/// A buffer that was too small: its name, what it held and what it needed, in elements.
+pub(crate) type Outgrown = (String, [usize; 2]);
+
 /// What a frame did and what it cost.
 pub(crate) struct Executed {
     pub(crate) passes: Vec<PassTiming>,
     pub(crate) gpu_ms: f64,
     pub(crate) pipeline_ms: f64,
-    /// Buffers that were too small, with the elements that they held and needed. What was made of them is wrong; the next frame gives them
-    /// enough.
-    pub(crate) outgrown: Vec<(String, [usize; 2])>,
+    /// Buffers that were too small. What was made of them is wrong; the next frame gives them enough.
+    pub(crate) outgrown: Vec<Outgrown>,
     read_backs: Vec<Vec<u8>>,
 }
 
@@ -129,23 +131,30 @@ impl Graph<'_> {
         let declared: Vec<&str> = self.resources.iter().map(|resource| resource.name.as_str()).collect();
         self.store.retain(|name| declared.contains(&name));
         let read_backs = self.copy_read_backs(&read_back);
-        let outgrown = self.note_growth(&read_backs);
+        let outgrown = self.note_growth(&read_backs)?;
         Ok(Executed { passes, gpu_ms, pipeline_ms, outgrown, read_backs })
     }
 
     /// Remembers how much the buffers that were too small need, and a little more, so that not every change outgrows them again.
-    fn note_growth(&mut self, read_backs: &[Vec<u8>]) -> Vec<(String, [usize; 2])> {
+    fn note_growth(&mut self, read_backs: &[Vec<u8>]) -> Result<Vec<Outgrown>, VulkanError> {
         let mut outgrown = Vec::new();
         for growing in &self.growing {
             let words = read_backs[growing.needed.0].chunks_exact(4);
             let needed = words.skip(growing.index).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
             let needed = needed.take(1).sum::<u32>() as usize;
+            if needed > growing.most {
+                return Err(VulkanError::TooLarge {
+                    what: growing.name.clone(),
+                    asked: format!("{needed} elements"),
+                    limit: growing.most.to_string(),
+                });
+            }
             if needed > growing.capacity {
                 self.store.grown.insert(growing.name.clone(), needed + needed / 8);
                 outgrown.push((growing.name.clone(), [growing.capacity, needed]));
             }
         }
-        outgrown
+        Ok(outgrown)
     }
 
     /// Allocates what the running passes touch, and fills what the host supplies.

@@ -34,7 +34,7 @@ use crate::vulkan::{Buffer, Image, ImageInfo, RasterState};
 use bindings::{Access, BindingSet, BufferRef, BufferUse, ImageRef, ImageUse};
 use demand::Version;
 pub use describe::GraphDescription;
-pub(crate) use execute::{Executed, ReadBack};
+pub(crate) use execute::{Executed, Outgrown, ReadBack};
 pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList, PassBuilder};
 use pass::{Pass, Work};
 pub(crate) use store::Store;
@@ -104,6 +104,8 @@ pub(crate) struct Graph<'s> {
 struct Growing {
     name: String,
     capacity: usize,
+    /// Elements that the device allows.
+    most: usize,
     needed: ReadBack,
     index: usize,
 }
@@ -162,18 +164,20 @@ impl<'s> Graph<'s> {
     }
 
     /// A buffer for a number of elements that only the device finds out: `least` at first, and what [`Graph::grows`] found to be
-    /// needed from then on.
+    /// needed from then on, never more than the device allows.
     pub(crate) fn growing_buffer<T>(&mut self, name: &str, least: usize) -> BufferRef<T> {
         let count = self.store.grown.get(name).map_or(least, |&grown| grown.max(least));
-        self.buffer(name, count)
+        self.buffer(name, count.min(self.store.largest_buffer() / size_of::<T>().max(1)))
     }
 
     /// Says that word `index` of `needed` counts the elements that `buffer` ought to hold, also those for which there is no room. If it turns out
-    /// that there was not enough, [`Executed::outgrown`] says so, and the frame has to be declared and made again.
+    /// that there was not enough, [`Executed::outgrown`] says so, and the frame has to be declared and made again; if the device does not allow
+    /// as many, the frame fails.
     pub(crate) fn grows<T>(&mut self, buffer: BufferRef<T>, needed: BufferRef<u32>, index: usize) {
         let needed = self.read_back_buffer(needed);
         let name = self.resources[buffer.id].name.clone();
-        self.growing.push(Growing { name, capacity: buffer.count, needed, index });
+        let most = self.store.largest_buffer() / size_of::<T>().max(1);
+        self.growing.push(Growing { name, capacity: buffer.count, most, needed, index });
     }
 
     /// A buffer that the host fills with `elements`.

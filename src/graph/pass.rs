@@ -47,16 +47,8 @@ pub(crate) struct DrawList {
 
 pub(super) enum Draws {
     Meshes(Box<DrawList>),
-    Vertices {
-        vertices: u32,
-        instances: u32,
-    },
-    #[allow(dead_code, reason = "photon batches of the methods to come")]
-    Indirect {
-        buffer: usize,
-        offset: u64,
-        count: u32,
-    },
+    Vertices { vertices: u32, instances: u32 },
+    Indirect { buffer: usize, offset: u64, count: u32 },
 }
 
 pub(super) enum Work {
@@ -277,7 +269,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// The area of a raster pass that has no attachments.
-    #[allow(dead_code, reason = "list building of the methods to come")]
     pub(crate) fn area(mut self, extent: [u32; 2]) -> Self {
         self.targets().extent = extent;
         self
@@ -324,7 +315,6 @@ impl<'g, 's> PassBuilder<'g, 's> {
     }
 
     /// Draws as the `count` commands at word `index` of `arguments` say.
-    #[allow(dead_code, reason = "photon batches of the methods to come")]
     pub(crate) fn draw_indirect(mut self, arguments: BufferRef<u32>, index: usize, count: u32) {
         self.pass.others.push(arguments.access(BufferUse::Indirect));
         self.add(Work::Draw(Draws::Indirect { buffer: arguments.id, offset: index as u64 * 4, count }));

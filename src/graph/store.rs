@@ -69,6 +69,11 @@ impl Store {
         })
     }
 
+    /// Bytes of the largest buffer that a kernel may see whole.
+    pub(super) fn largest_buffer(&self) -> usize {
+        self.device.limits().max_storage_buffer_range as usize
+    }
+
     pub(crate) fn device(&self) -> &Arc<Device> {
         &self.device
     }
@@ -170,7 +175,7 @@ impl Store {
     ) -> Result<(), VulkanError> {
         let old = self.buffers.remove(name).map_or(vk::BufferUsageFlags::empty(), |stored| stored.usage);
         let usage = usage | old;
-        let limit = u64::from(self.device.limits().max_storage_buffer_range);
+        let limit = self.largest_buffer() as u64;
         if usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && bytes > limit {
             let mib = |bytes: u64| format!("{} MiB", bytes >> 20);
             return Err(VulkanError::TooLarge { what: name.to_owned(), asked: mib(bytes), limit: mib(limit) });

@@ -9,7 +9,7 @@ use super::path_frame::TracedPaths;
 use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
-use crate::graph::{Graph, GraphDescription, Store};
+use crate::graph::{Graph, GraphDescription, Outgrown, Store};
 use crate::reference::traced_scene::{TracedScene, traced_key};
 use crate::scene::Scene;
 use crate::vulkan::{Device, VulkanError};
@@ -224,9 +224,6 @@ impl std::fmt::Debug for Renderer {
         f.debug_struct("Renderer").field("settings", &self.settings).finish_non_exhaustive()
     }
 }
-
-/// A buffer that was too small: its name, what it held and what it needed.
-type Outgrown = (String, [usize; 2]);
 
 /// From four floats a pixel.
 fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {

@@ -12,24 +12,30 @@ use crate::vulkan::RasterState;
 /// Declares the passes that fill `splat.result`.
 pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (buffer, landed) = (splat.buffer, &splat.landed);
-    let sums = splat.cleared_sums(graph, TileList::Ordinary);
-    let pass = Discs {
-        camera: buffer.camera.clone(),
-        discs: splat.discs.texels(RECORDS),
-        places: splat.places.texels(vk::Format::R32G32_UINT),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        tile_peaks: splat.tile_peak_texels(),
-        sums: sums.read_write(),
-        gaussian: splat.gaussian,
-        elliptic: splat.elliptic,
-        push: DiscsPush { image_size: splat.image_size, downscale: splat.downscale, tolerance: splat.tolerance },
-    };
-    let state = RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, ..RasterState::default() };
-    graph.raster("caustics/photons/discs", pass, state).area(splat.grid.size).draw_indirect(
-        landed.counts,
-        STAGE_WORDS * landed.stage + DRAW_WORD,
-        1,
-    );
-    splat.resolve(graph, TileList::Ordinary, sums);
+    let list = TileList::Ordinary;
+    for range in splat.ranges(graph) {
+        splat.clear_sums(graph, list, range);
+        let pass = Discs {
+            camera: buffer.camera.clone(),
+            discs: splat.discs.texels(RECORDS),
+            places: splat.places.texels(vk::Format::R32G32_UINT),
+            depth: buffer.depth.sampled(),
+            surface: buffer.surface.sampled(),
+            tile_peaks: splat.tile_peak_texels(),
+            sums: range.sums.read_write(),
+            gaussian: splat.gaussian,
+            elliptic: splat.elliptic,
+            push: DiscsPush {
+                image_size: splat.image_size,
+                downscale: splat.downscale,
+                tolerance: splat.tolerance,
+                range: range.ends,
+            },
+        };
+        let state = RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, ..RasterState::default() };
+        let word = STAGE_WORDS * landed.stage + DRAW_WORD;
+        let name = range.pass_name(list, "discs");
+        graph.raster(&name, pass, state).area(splat.grid.size).draw_indirect(landed.counts, word, 1);
+        splat.resolve(graph, list, range);
+    }
 }

@@ -100,7 +100,6 @@ pub(crate) fn scatter(
             stage: rays.stage as u32,
             capacity: rays.capacity,
             beams_decide: u32::from(inputs.settings.footprint == PhotonFootprint::Beam),
-            reserved: 0,
         },
     };
     graph

@@ -2,7 +2,7 @@
 //! nearest of them (`layers`), and which depths of a block of texels are occupied.
 //!
 //! Nobody knows the number of nodes before the lists are drawn. The pool starts with some for every texel; what does not fit is counted all the
-//! same, and the frame is made again with a pool that holds it ([`Graph::grows`]).
+//! same, and the frame is made again with a pool that holds it ([`Graph::grows`]). Layers have a node for every texel, a number known beforehand.
 
 use ash::vk;
 
@@ -104,17 +104,22 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: u
         view_count,
         views: graph.upload("photons.lists.views", &texels, depends),
         pixels: graph.buffer("photons.lists.pixels", 4 * pixel_count),
-        nodes: graph.growing_buffer("photons.lists.nodes", pool),
+        nodes: match inputs.settings.geometry {
+            PhotonGeometry::Lists => graph.growing_buffer("photons.lists.nodes", pool),
+            PhotonGeometry::Layers(_) => graph.buffer("photons.lists.nodes", pool),
+        },
         node_count: graph.buffer("photons.lists.node_count", 1),
         blocks: Blocks { slices: graph.buffer("photons.lists.blocks", block_count), top, first_of_level },
     };
     graph.fill_buffer("caustics/photons/lists-clear", lists.pixels, u32::MAX);
     graph.fill_buffer("caustics/photons/lists-clear-count", lists.node_count, 0);
     match inputs.settings.geometry {
-        PhotonGeometry::Lists => append(graph, inputs, &lists, &views),
+        PhotonGeometry::Lists => {
+            append(graph, inputs, &lists, &views);
+            graph.grows(lists.nodes, lists.node_count, 0);
+        }
         PhotonGeometry::Layers(count) => layers::peel(graph, inputs, &lists, &views, count),
     }
-    graph.grows(lists.nodes, lists.node_count, 0);
     occupy(graph, &lists);
     lists
 }

@@ -8,6 +8,7 @@ mod bvh;
 mod choose;
 mod discs;
 mod emit;
+mod grid;
 mod land;
 mod layers;
 pub(crate) mod lines;
@@ -16,6 +17,7 @@ pub(crate) mod lists;
 pub(crate) mod march;
 pub(crate) mod records;
 pub(crate) mod splat;
+pub(crate) mod sums;
 mod tiles;
 mod upsample;
 mod views;
@@ -62,7 +64,12 @@ pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Optio
         return None;
     }
     let traced = trace_all(graph, inputs);
-    let splatted = SplatInputs { buffer: inputs.buffer, settings: inputs.settings, length: inputs.data.radius };
+    let splatted = SplatInputs {
+        buffer: inputs.buffer,
+        settings: inputs.settings,
+        length: inputs.data.radius,
+        tiles_at_once: sums::TILES_AT_ONCE,
+    };
     Some(splat(graph, &splatted, &traced.landed))
 }
 

@@ -18,16 +18,15 @@
 use ash::vk;
 
 use super::discs::discs;
+use super::grid::Grid;
 use super::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
 use super::tiles::tiles;
 use super::upsample::upsample;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
-use crate::graph::{ClearColor, Dependence, Graph};
+use crate::graph::{ClearColor, Graph};
 use crate::renderer::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
-use crate::shaders::photon_splat::{
-    Clear, ClearPush, Project, ProjectPush, Resolve, ResolvePush, Start, StartPush, Touch, TouchPush,
-};
+use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
 const STATE_WORDS: usize = 18;
@@ -57,14 +56,10 @@ impl TileList {
 /// What a photon may be off its surface, over the scene's length: its hit may come from lists of limited resolution.
 const TOLERANCE: f64 = 1e-3;
 
-/// Samples to a side of a tile.
-const TILE_SIDE: u32 = 16;
-/// Words of the sums of a tile's samples.
-const TILE_SUM_WORDS: usize = 8 * 256;
 /// Photons that a group of `tiles` takes at most: a driver may end loops after 65535 rounds, of which a photon takes up to 1⅛.
 const PART_PHOTONS: u32 = 32768;
 
-const WORDS: vk::Format = vk::Format::R32_UINT;
+pub(super) const WORDS: vk::Format = vk::Format::R32_UINT;
 pub(super) const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 
 /// What splatting takes.
@@ -73,6 +68,8 @@ pub(crate) struct SplatInputs<'a> {
     pub(crate) settings: &'a PhotonSettings,
     /// Radius of the scene, metres.
     pub(crate) length: f64,
+    /// Tiles whose sums are kept at a time, [`super::sums::TILES_AT_ONCE`].
+    pub(crate) tiles_at_once: usize,
 }
 
 /// What the passes share.
@@ -97,45 +94,10 @@ pub(super) struct Splat<'a> {
     pub(super) state: BufferRef<u32>,
     /// Whether a tile may have more photons than a group takes.
     pub(super) may_crowd: bool,
+    /// Tiles whose sums are kept at a time.
+    pub(super) tiles_at_once: usize,
     /// What the samples' results are written to: the slot, or irradiance.
     pub(super) result: ImageRef,
-}
-
-/// The grid of cells (glsl/photon_splat/levels.glsl).
-pub(super) struct Grid {
-    /// Samples.
-    pub(super) size: [u32; 2],
-    pub(super) levels: BufferRef<[u32; 4]>,
-    pub(super) level_count: i32,
-    pub(super) row_count: u32,
-    pub(super) cell_count: u32,
-}
-
-impl Grid {
-    fn upload(graph: &mut Graph<'_>, size: [u32; 2]) -> Grid {
-        let (mut levels, mut row_count, mut cell_count) = (Vec::new(), 0, 0);
-        for log2 in 1_u32.. {
-            let [columns, rows] = size.map(|side| side.div_ceil(1 << log2));
-            levels.push([columns, rows, cell_count, 0]);
-            row_count += rows;
-            cell_count += rows * (columns + 1);
-            if columns * rows == 1 {
-                break;
-            }
-        }
-        let level_count = i32::try_from(levels.len()).unwrap_or(i32::MAX);
-        let levels = graph.upload("photons.splat_levels", &levels, Dependence::NONE);
-        Grid { size, levels, level_count, row_count, cell_count }
-    }
-
-    pub(super) fn tiles(&self) -> [u32; 2] {
-        self.size.map(|side| side.div_ceil(TILE_SIDE))
-    }
-
-    pub(super) fn tile_count(&self) -> usize {
-        let [columns, rows] = self.tiles();
-        columns as usize * rows as usize
-    }
 }
 
 /// Declares the passes; returns the slot.
@@ -171,6 +133,7 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         tile_peaks: graph.buffer("photons.tile_peaks", tile_count),
         state: graph.buffer("photons.splat_state", STATE_WORDS),
         may_crowd: settings.splat != PhotonSplatting::Discs && landed.capacity > PART_PHOTONS,
+        tiles_at_once: inputs.tiles_at_once,
         result,
     };
     shared.declare_start(graph);
@@ -260,40 +223,6 @@ impl Splat<'_> {
             TileList::Ordinary => self.tile_list.texels(WORDS),
             TileList::Crowded => self.crowded.texels(WORDS),
         }
-    }
-
-    /// Sums of all tiles' samples, zero in those of `list`.
-    pub(super) fn cleared_sums(&self, graph: &mut Graph<'_>, list: TileList) -> BufferRef<u32> {
-        let sums = graph.buffer("photons.sums", TILE_SUM_WORDS * self.grid.tile_count());
-        let pass = Clear {
-            state: self.state_texels(),
-            tiles: self.tile_texels(list),
-            sums: sums.write(),
-            push: ClearPush { list: list.word() as u32 },
-        };
-        graph.pass(&list.pass_name("clear-sums"), pass).threads_indirect(self.state, list.word());
-        sums
-    }
-
-    /// Writes the results of the tiles of `list` from their sums.
-    pub(super) fn resolve(&self, graph: &mut Graph<'_>, list: TileList, sums: BufferRef<u32>) {
-        let (specular, has_specular) = self.buffer.specular();
-        let pass = Resolve {
-            surface: self.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            state: self.state_texels(),
-            tiles: self.tile_texels(list),
-            tile_peaks: self.tile_peak_texels(),
-            sums: sums.texels(RECORDS),
-            result: self.result.modify(),
-            push: ResolvePush {
-                image_size: self.image_size,
-                downscale: self.downscale,
-                has_specular,
-                list: list.word() as u32,
-            },
-        };
-        graph.pass(&list.pass_name("resolve"), pass).threads_indirect(self.state, list.word());
     }
 
     pub(super) fn tile_peak_texels(&self) -> TexelBuffer {

@@ -28,7 +28,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         cell_counts: splat.cell_counts.texels(WORDS),
         cell_starts: cell_starts.write(),
         sorted_count: sorted_count.read_write(),
-        push: ScanPush { row_count: grid.row_count, reserved: 0 },
+        push: ScanPush { row_count: grid.row_count },
     };
     graph.pass("caustics/photons/scan", pass).threads_indirect(splat.state, ROWS_WORD);
 
@@ -48,7 +48,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 
-    let gather = |result_sums: BufferRef<u32>, list: TileList| {
+    let gather = |result_sums: BufferRef<u32>, list: TileList, range: [i32; 2]| {
         let (specular, has_specular) = splat.buffer.specular();
         Gather {
             camera: splat.buffer.camera.clone(),
@@ -74,15 +74,20 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
                 downscale: splat.downscale,
                 level_count: grid.level_count,
                 has_specular,
+                range,
             },
         }
     };
     let list = TileList::Ordinary;
-    graph.pass(&list.pass_name("gather"), gather(sorted_count, list)).threads_indirect(splat.state, list.word());
+    let pass = gather(sorted_count, list, [0, i32::MAX]);
+    graph.pass(&list.pass_name("gather"), pass).threads_indirect(splat.state, list.word());
     if splat.may_crowd {
         let list = TileList::Crowded;
-        let sums = splat.cleared_sums(graph, list);
-        graph.pass(&list.pass_name("gather"), gather(sums, list)).threads_indirect(splat.state, PARTS_WORD);
-        splat.resolve(graph, list, sums);
+        for range in splat.ranges(graph) {
+            splat.clear_sums(graph, list, range);
+            let pass = gather(range.sums, list, range.ends);
+            graph.pass(&range.pass_name(list, "gather"), pass).threads_indirect(splat.state, PARTS_WORD);
+            splat.resolve(graph, list, range);
+        }
     }
 }
