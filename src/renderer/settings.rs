@@ -484,7 +484,7 @@ impl Settings {
             "shadow.filter_radius" => within(self.shadow.filter_radius, 0, 4),
             "shadow.normal_offset" => between(self.shadow.normal_offset, 0.0, 16.0),
             "traced.samples" => within(self.traced.samples, 0, 1024),
-            "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            "rsm.vpls" => within(self.rsm.vpls, 0, 32768),
             "vpl.count" => within(self.vpl.count, 0, 65536),
             "vpl.bounces" => within(self.vpl.bounces, 0, 16),
             "vpl.levels" => within(self.vpl.levels, 1, 7),
