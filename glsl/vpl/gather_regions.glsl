@@ -24,7 +24,8 @@ void store_sum(ivec2 texel, vec3 sum, vec3 normal) {
 
 void main() {
     uint count = texelFetch(list, 3).x;
-    uint index = 2u * gl_GlobalInvocationID.x;
+    uint row = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint index = 2u * (gl_GlobalInvocationID.y * row + gl_GlobalInvocationID.x);
     if (index >= count) {
         return;
     }
