@@ -1,8 +1,6 @@
 //! Which pieces a frame consists of: the settings' methods, as far as the scene and the request need them.
 
-use super::{
-    CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, PhotonTracing, Settings, Slot, VplVisibility,
-};
+use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, PhotonTracing, Settings, Slot, VplVisibility};
 use crate::caustics::photons::{PhotonInputs, photons};
 use crate::diffuse::rsm::{Rsm, rsm};
 use crate::diffuse::vpl::{Vpl, VplInputs, vpl};
