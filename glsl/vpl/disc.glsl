@@ -4,6 +4,10 @@
 
 #include "lib/vpl.glsl"
 
+// Area of a VPL's disc over the area that it stands for, at most: neighbours overlap so far that a wall of equal VPLs looks even to what is close
+// to it. Measured against path tracing in a Cornell box with 256 VPLs: rrmse 0.090 at 1, 0.066 at 2, 0.050 at 4, 0.049 at 5.
+const float OVERLAP = 5.0;
+
 // Over the disc's radius: a receiver closer to the disc's plane gets nothing. A wall without thickness has VPLs on its other side, in front of which
 // rounding may put it.
 const float LEAST_HEIGHT = 2e-4;

@@ -2,16 +2,13 @@
 //
 //   E(x) = Σ_k Φ_k/π · F_k(x) · V_k(x)      [W/m²]
 //
-// F the form factor of vpl/disc.glsl; V the visibility, if the including file defines, before it includes this one,
-//
-//   #define VPL_VISIBILITY
-//   float vpl_visibility(int k, Vpl vpl, vec3 position_rs, vec3 normal);
-//
-// which is asked only where F is above 0. The including file also binds `uniform samplerBuffer vpls`.
+// F the form factor of vpl/disc.glsl, V the visibility of vpl/visibility.glsl, which is asked only where F is above 0. The including file
+// binds `uniform samplerBuffer vpls`.
 #ifndef VPL_GATHER
 #define VPL_GATHER
 
 #include "vpl/disc.glsl"
+#include "vpl/visibility.glsl"
 
 struct Receiver {
     vec3 position_rs;
@@ -26,11 +23,9 @@ struct VplRange {
 
 float received_factor(int k, Vpl vpl, Receiver receiver) {
     float factor = disc_form_factor(vpl, receiver.position_rs, receiver.normal);
-#ifdef VPL_VISIBILITY
     if (factor > 0.0) {
         factor *= vpl_visibility(k, vpl, receiver.position_rs, receiver.normal);
     }
-#endif
     return factor;
 }
 

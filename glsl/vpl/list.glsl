@@ -1,5 +1,6 @@
-// The list of valid regions (alg. 3.1 of Quyen 2014). Words 0 to 2 are the groups that gather for it, word 3 is its length, then come the
-// regions as x | y << 16, texels of the flattened image. Their order differs from run to run, what is made of them does not.
+// The list of valid regions (alg. 3.1 of Quyen 2014). Words 0 to 2 are the groups that gather for it, in rows of ROW_GROUPS if there are
+// more, since no device need dispatch more than 65,535 along an axis. Word 3 is its length, then come the regions as x | y << 16, texels of the
+// flattened image. Their order differs from run to run, what is made of them does not.
 //
 // A region is valid if it is flat but the next larger one is not: whoever merges four quarters into a region knows both.
 
@@ -13,11 +14,11 @@ layout(constant_id = 0) const uint LISTS = 0u;        // 0: nobody wants the lis
 layout(constant_id = 1) const uint GROUP_REGIONS = 1u;  // regions that one group gathers for
 
 const uint LIST_HEADER = 4u;
+const uint ROW_GROUPS = 32768u;
 
 // All invocations of the subgroup must come here: one atomic a subgroup. Bit i of `valid`: quarter i of the region, bit 4: the region itself.
 void append_regions(uint valid, ivec2 size, int level, ivec2 cell) {
     if (gl_GlobalInvocationID == uvec3(0u)) {
-        list[1] = 1u;
         list[2] = 1u;
     }
     uint count = uint(bitCount(valid));
@@ -26,7 +27,9 @@ void append_regions(uint valid, ivec2 size, int level, ivec2 cell) {
     uint first = 0u;
     if (subgroupElect() && total > 0u) {
         first = atomicAdd(list[3], total);
-        atomicMax(list[0], (first + total + GROUP_REGIONS - 1u) / GROUP_REGIONS);
+        uint groups = (first + total + GROUP_REGIONS - 1u) / GROUP_REGIONS;
+        atomicMax(list[0], min(groups, ROW_GROUPS));
+        atomicMax(list[1], (groups + ROW_GROUPS - 1u) / ROW_GROUPS);
     }
     place += LIST_HEADER + subgroupBroadcastFirst(first);
     for (int i = 0; i < 5; ++i) {

@@ -9,14 +9,17 @@
 #include "vpl/paths.glsl"
 #include "vpl/rays.glsl"
 
-// One invocation makes a VPL where a path met a surface (Keller 1997). With Φ the flux of the VPL that it left, which n of N of its bounce
-// do, and ρ = indirect_diffuse_albedo() there,
+// One invocation makes a VPL where a path met a surface (Keller 1997). With Φ the flux of the VPL that it left, which n paths leave of N
+// in its bounce, and ρ = indirect_diffuse_albedo() there,
 //
-//   Φ' = Φ · N/n · ρ       A' = 1/D       D = n/N · Σ_i (n_i·−ω)⁺ (n_y·ω)⁺ / (π(d² + A_i/π))
+//   Φ' = Φ · N/n · ρ       A' = 5/D, at most the scene's π r²       D = n/N · Σ_i F_i(y)/π
 //
-// in W and m². ΣΦ' over a bounce is on average what the scene reflects of the bounce before. D is the density of the bounce's VPLs
-// around y, over all from which a path may have come there, so that the disc of each has the area which it stands for; what hides them from
-// y is left out of it. So a disc's radiosity is what gathering the bounce before gives there, without visibility.
+// in W and m², F_i of vpl/disc.glsl. ΣΦ' over a bounce is on average what the scene reflects of the bounce before.
+//
+// A VPL i sends n/N paths on average, cosine-distributed: per path they meet cos θ_i/π · cos θ_y/d² of the surface at y [1/m²], for a disc, from
+// all over it, F_i/π. D is the sum over all VPLs that send light, taken over every k-th where they are many, and leaves out what hides them from y. So
+// 1/D is the area that a VPL of this bounce stands for, and discs of just that area have the radiosity ρ Σ_i Φ_i F_i/π that gathering the
+// bounce before gives there, without visibility, if all Φ_i are equal. Those made here overlap five times (OVERLAP): each has a fifth of it.
 
 layout(local_size_x = 64) in;
 
@@ -37,9 +40,6 @@ layout(set = 0, binding = 9) uniform samplerBuffer texels;
 layout(set = 0, binding = 10) buffer Vpls { vec4 vpls[]; };
 
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
-
-// Area of a disc over A': neighbours overlap, as those of the first bounce do (glsl/vpl/vpls.comp).
-const float OVERLAP = 5.0;
 
 // Parents that the density is taken over, at most; of more, every k-th.
 const uint DENSITY_PARENTS = 256u;

@@ -1,5 +1,7 @@
 // Visibility of virtual point lights, for vpl/gather.glsl: none asked for, by imperfect shadow maps, or by one ray each. Bindings 8 to 12 and
 // 16 to 22; what a kernel does not use, something else may stand for.
+#ifndef VPL_VISIBILITY
+#define VPL_VISIBILITY
 
 #include "vpl/rays.glsl"
 
@@ -31,8 +33,6 @@ bool ray_sees(Vpl vpl, vec3 position_rs, vec3 normal) {
     return !is_occluded(origin, target - origin, 1.0);
 }
 
-#define VPL_VISIBILITY
-
 float vpl_visibility(int k, Vpl vpl, vec3 position_rs, vec3 normal) {
     bool sees = true;
     if (VISIBILITY == VISIBILITY_ISM) {
@@ -42,3 +42,5 @@ float vpl_visibility(int k, Vpl vpl, vec3 position_rs, vec3 normal) {
     }
     return sees ? 1.0 : 0.0;
 }
+
+#endif

@@ -94,6 +94,42 @@ fn a_scene_without_specular_surfaces_records_no_photon() {
     assert_eq!(reason(&frame, "diffuse/vpl"), Some("no diffuse surface"));
 }
 
+/// Without rays the scene takes what it takes for reflective shadow maps.
+#[test]
+fn only_what_sends_rays_builds_the_hierarchy() {
+    let session = Session::open();
+    let bytes = |name: &str, settings: &Settings| {
+        let scene = builtin(name);
+        session.render(&scene, settings, &everything(&scene, [16, 12])).timings.memory_bytes["scene"]
+    };
+    let rsm = Settings::new(Technique::Rsm, Preset::Default);
+    let without_rays = [
+        ("cornell-point", vec![]),
+        ("ring", vec![("photons.max", "0")]),
+        ("ring", vec![("photons.bounces", "0")]),
+        ("ring", vec![("photons.trace", "march")]),
+        ("cornell-point", vec![("vpl.visibility", "traced"), ("vpl.count", "0")]),
+        ("cornell-point", vec![("vpl.visibility", "traced"), ("vpl.bounces", "0")]),
+    ];
+    for (name, changes) in without_rays {
+        assert_eq!(bytes(name, &hybrid(Preset::Default, &changes)), bytes(name, &rsm), "{name}, {changes:?}");
+    }
+    for (name, changes) in [("ring", vec![]), ("cornell-point", vec![("vpl.bounces", "2")])] {
+        assert!(bytes(name, &hybrid(Preset::Default, &changes)) > bytes(name, &rsm), "{name}, {changes:?}");
+    }
+}
+
+/// Photons that are traced through the hierarchy leave the passes of the diffuse light alone.
+#[test]
+fn diffuse_light_does_not_depend_on_how_photons_are_traced() {
+    let session = Session::open();
+    let (scene, mut renderer) = (builtin("ring"), session.renderer(&hybrid(Preset::Default, &[])));
+    let with = |slots: &[Slot]| FrameRequest { image: false, slots: slots.to_vec(), ..everything(&scene, [48, 40]) };
+    renderer.render(&scene, &with(&[Slot::Diffuse])).expect("a frame");
+    let both = renderer.render(&scene, &with(&INDIRECT)).expect("a frame");
+    assert!(ran(&both, "caustics") && !ran(&both, "diffuse"));
+}
+
 #[test]
 fn nothing_runs_again_where_nothing_moved() {
     for name in ["ring", "water"] {

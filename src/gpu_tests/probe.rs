@@ -8,7 +8,7 @@ use crate::frame::scene_data::SceneData;
 use crate::frame::twins;
 use crate::graph::{Graph, ReadBack};
 use crate::reference::traced_scene::TracedScene;
-use crate::renderer::declare::{Declared, Prepared, declare};
+use crate::renderer::declare::{Declared, Prepared, declare, sends_rays};
 use crate::renderer::{FrameRequest, Settings, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
@@ -35,7 +35,7 @@ pub(super) fn probe(
     let limit = device.limits().max_image_dimension2_d;
     let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
-    let traces = Slot::ALL.into_iter().any(|slot| settings.sends_rays(slot));
+    let traces = Slot::ALL.into_iter().any(|slot| sends_rays(settings, &scene.facts(), slot));
     let traced = traces.then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
     let prepared = Prepared { scene, data: &data, lights: &set, traced: traced.as_ref() };
     let mut graph = Graph::new(&mut store);

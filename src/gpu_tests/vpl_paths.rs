@@ -7,7 +7,7 @@ use super::probe::{Vpl, probe};
 use super::scenes::{add_light, builtin, closed_box, floor, lambert, request, view, vpl_settings};
 use super::session::Session;
 use crate::frame::twins;
-use crate::renderer::{FrameRequest, Timing};
+use crate::renderer::{FrameRequest, Slot, Timing};
 use crate::scene::{LightKind, Scene};
 
 /// The VPLs of all bounces, bounce by bounce.
@@ -48,6 +48,23 @@ fn each_bounce_carries_what_the_walls_reflect_of_the_one_before() {
         println!("{:.4} W of {:.4} W: {error:.2e} off", pair[1], pair[0] * albedo);
         assert!(error < 0.04, "{} W, not {} W", pair[1], pair[0] * albedo);
     }
+}
+
+/// More VPLs than the software driver lets one loop go through: were those beyond lost, the second bounce would be.
+#[test]
+fn light_of_very_many_vpls_is_all_gathered() {
+    let session = Session::open();
+    let room = white_room([0.7; 3]);
+    let image = |count: &str| {
+        let settings = vpl_settings(&[("vpl.count", count), ("vpl.bounces", "2"), ("lights.resolution", "64")]);
+        let camera = view(DVec3::new(0.1, 0.2, 0.9), DVec3::ZERO);
+        let frame = session.render(&room, &settings, &request([4, 4], camera, &[Slot::Diffuse]));
+        let channels = frame.slots[&Slot::Diffuse].pixels.as_flattened();
+        channels.iter().map(|&channel| f64::from(channel)).sum::<f64>() / channels.len() as f64
+    };
+    let [few, many] = ["2048", "65536"].map(image);
+    println!("{few:.4} W/(m² sr) of 2,048 VPLs, {many:.4} of 65,536");
+    assert!((many / few - 1.0).abs() < 0.03, "{many}, not {few}");
 }
 
 #[test]

@@ -126,6 +126,19 @@ fn rays_find_what_brute_force_finds() {
     assert!(worst < 0.05, "{worst}");
 }
 
+/// With rays a pass takes few VPLs: there are as many passes as the most VPLs need.
+#[test]
+fn rays_reach_the_most_vpls() {
+    let session = Session::open();
+    let scene = halves(0.6);
+    let request = request([2, 2], view(DVec3::new(0.3, -0.2, 0.4), DVec3::new(-2.0, -0.4, -0.3)), &[Slot::Diffuse]);
+    let [few, most] = ["1024", "65536"].map(|count| {
+        mean(&diffuse(&session, &scene, &request, &with("traced", &[("vpl.shading", "pixels"), ("vpl.count", count)])))
+    });
+    println!("{few:.4} of 1,024 VPLs, {most:.4} of 65,536");
+    assert!((few / most - 1.0).abs() < 0.05, "{few}, {most}");
+}
+
 /// A closed wall between lamp and camera: nothing comes through it, whatever the VPLs and however they are gathered.
 #[test]
 fn rays_let_nothing_through_a_wall() {

@@ -1,6 +1,6 @@
 //! Which pieces a frame consists of: the settings' methods, as far as the scene and the request need them.
 
-use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, Settings, Slot};
+use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, PhotonTracing, Settings, Slot, VplVisibility};
 use crate::caustics::photons::{PhotonInputs, photons};
 use crate::diffuse::rsm::{Rsm, rsm};
 use crate::diffuse::vpl::{Vpl, VplInputs, vpl};
@@ -53,6 +53,23 @@ pub(crate) struct Prepared<'a> {
     pub(crate) lights: &'a LightSet,
     /// Present if a wanted slot is filled by rays and something shines.
     pub(crate) traced: Option<&'a TracedScene>,
+}
+
+/// Whether the passes that fill `slot` send rays through the scene's hierarchy, if something shines.
+pub(crate) fn sends_rays(settings: &Settings, facts: &Facts, slot: Slot) -> bool {
+    let vpl_rays = settings.vpl.visibility == VplVisibility::Traced || settings.vpl.bounces > 1;
+    match slot {
+        Slot::Emission | Slot::Specular => false,
+        Slot::Direct => settings.methods.direct == DirectMethod::Traced,
+        Slot::Diffuse => {
+            let piece = DiffusePiece::of(settings, facts);
+            settings.methods.diffuse == DiffuseMethod::Vpl && vpl_rays && piece.is_some_and(|it| it.skipped.is_none())
+        }
+        Slot::Caustics => {
+            let piece = CausticsPiece::of(settings, facts);
+            settings.photons.trace == PhotonTracing::Bvh && piece.is_some_and(|it| it.skipped.is_none())
+        }
+    }
 }
 
 /// Declares the frame.
@@ -109,6 +126,13 @@ struct Frame<'a> {
     facts: &'a Facts,
 }
 
+impl<'a> Frame<'a> {
+    /// What rays meet, where the passes of `slot` send any: the others must not depend on it.
+    fn traced_for(&self, slot: Slot) -> Option<&'a TracedScene> {
+        self.traced.filter(|_| sends_rays(self.settings, self.facts, slot))
+    }
+}
+
 fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'_>, wants: impl Fn(Slot) -> bool) {
     let settings = frame.settings;
     if settings.methods.direct == DirectMethod::Traced && wants(Slot::Direct) {
@@ -151,7 +175,7 @@ fn declare_light(graph: &mut Graph<'_>, declared: &mut Declared, frame: &Frame<'
                 camera: frame.camera,
                 set: frame.set,
                 lights: &lights,
-                traced: frame.traced,
+                traced: frame.traced_for(Slot::Caustics),
                 settings: &settings.photons,
             };
             declared.caustics = photons(graph, &inputs);
@@ -226,7 +250,7 @@ fn declare_diffuse(
             set: frame.set,
             lights,
             reflective,
-            traced: frame.traced,
+            traced: frame.traced_for(Slot::Diffuse),
             settings: &settings.vpl,
         };
         declared.vpl = Some(vpl(graph, &inputs));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::declare::{Prepared, declare};
+use super::declare::{Prepared, declare, sends_rays};
 use super::path_frame::TracedPaths;
 use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
 use crate::frame::light_set::LightSet;
@@ -64,10 +64,12 @@ impl Renderer {
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_size(request)?;
-        if !self.settings.traces_rays() {
+        let traces_paths = self.settings.methods.traces_paths();
+        let facts = scene.facts();
+        if !traces_paths && !Slot::ALL.into_iter().any(|slot| sends_rays(&self.settings, &facts, slot)) {
             self.release_traced_scene();
         }
-        if self.settings.methods.traces_paths() { self.render_paths(scene, request) } else { self.draw(scene, request) }
+        if traces_paths { self.render_paths(scene, request) } else { self.draw(scene, request) }
     }
 
     pub(super) fn device(&self) -> &Arc<Device> {
@@ -196,9 +198,9 @@ impl Renderer {
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
         self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
-        let settings = &self.settings;
-        let traces = Slot::ALL.into_iter().any(|slot| request.wants(slot) && settings.sends_rays(slot));
-        if traces && scene.facts().lit() { self.traced_scene(scene).map(Some) } else { Ok(None) }
+        let (settings, facts) = (&self.settings, scene.facts());
+        let traces = Slot::ALL.into_iter().any(|slot| request.wants(slot) && sends_rays(settings, &facts, slot));
+        if traces && facts.lit() { self.traced_scene(scene).map(Some) } else { Ok(None) }
     }
 
     /// The scene as rays meet it, built anew if geometry, materials or lights changed.

@@ -405,23 +405,6 @@ impl Settings {
         }
     }
 
-    /// Whether the passes that fill `slot` send rays through the scene's hierarchy.
-    pub(crate) fn sends_rays(&self, slot: Slot) -> bool {
-        let Methods { direct, diffuse, caustics, specular: _ } = self.methods;
-        let vpl_rays = self.vpl.visibility == VplVisibility::Traced || self.vpl.bounces > 1;
-        match slot {
-            Slot::Emission | Slot::Specular => false,
-            Slot::Direct => direct == DirectMethod::Traced,
-            Slot::Diffuse => diffuse == DiffuseMethod::Vpl && self.vpl.count > 0 && vpl_rays,
-            Slot::Caustics => caustics == CausticsMethod::Photons && self.photons.trace == PhotonTracing::Bvh,
-        }
-    }
-
-    /// Whether anything sends rays or traces paths.
-    pub(crate) fn traces_rays(&self) -> bool {
-        self.methods.traces_paths() || Slot::ALL.into_iter().any(|slot| self.sends_rays(slot))
-    }
-
     /// Where in a pixel the methods sample light: at its centre, unless paths are traced otherwise.
     pub fn filter(&self) -> PixelFilter {
         if self.methods.traces_paths() { self.path.filter } else { PixelFilter::Center }
@@ -485,7 +468,7 @@ impl Settings {
             "shadow.filter_radius" => within(self.shadow.filter_radius, 0, 4),
             "shadow.normal_offset" => between(self.shadow.normal_offset, 0.0, 16.0),
             "traced.samples" => within(self.traced.samples, 0, 1024),
-            "rsm.vpls" => within(self.rsm.vpls, 0, 65536),
+            "rsm.vpls" => within(self.rsm.vpls, 0, 32768),
             "vpl.count" => within(self.vpl.count, 0, 65536),
             "vpl.bounces" => within(self.vpl.bounces, 0, 16),
             "vpl.levels" => within(self.vpl.levels, 1, 7),

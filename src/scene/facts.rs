@@ -19,7 +19,8 @@ pub struct Facts {
     /// Some surface has a specular lobe of any width: metal, or a dielectric whose specular factor and Fresnel reflectance are
     /// above 0, or transmissive. Without one, the slots `specular` and `caustics` are black.
     pub specular: bool,
-    /// Some surface has a specular lobe with a roughness below 0.5, or a roughness texture: what photons need be sent to.
+    /// Some surface has a specular lobe with a roughness below 0.5, or a roughness texture: what paths from the lights of the
+    /// reference are sent for.
     pub glossy: bool,
     /// Some surface transmits light.
     pub transmissive: bool,

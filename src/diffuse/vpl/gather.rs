@@ -1,7 +1,7 @@
 //! Irradiance from all VPLs, at pixels or at regions.
 //!
-//! Where rays are traced, a pass takes a range of the VPLs, and each adds to what the one before it found: the software driver ends all loops
-//! of an invocation after 65,535 steps together, those of the rays' ways through the hierarchy included.
+//! A pass takes a range of the VPLs, and each adds to what the one before it found: the software driver ends all loops of an invocation after 65,535
+//! steps together, those of the rays' ways through the hierarchy included.
 
 use ash::vk;
 
@@ -20,12 +20,13 @@ use crate::vulkan::{RasterState, StencilState};
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const BLACK: ClearColor = ClearColor::Float([0.0; 4]);
 
-/// VPLs that a pass sends rays to, from two receivers.
+/// VPLs that a pass takes without rays, and that it sends rays to from two receivers.
+const MOST_VPLS: u32 = 1 << 15;
 const TRACED_VPLS: u32 = 96;
 
 /// What each pass takes, and its name.
 fn ranges(name: &str, vpl_count: u32, visibility: &Visibility) -> Vec<(String, VplRange)> {
-    let most = if visibility.kind == TRACED { TRACED_VPLS } else { vpl_count.max(1) };
+    let most = if visibility.kind == TRACED { TRACED_VPLS } else { MOST_VPLS };
     let pass = |part: u32| {
         let (first, end) = (part * most, ((part + 1) * most).min(vpl_count));
         let name = if part == 0 { name.to_owned() } else { format!("{name}-{}", part + 1) };

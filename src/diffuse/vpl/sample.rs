@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::VplInputs;
 use crate::graph::bindings::BufferRef;
-use crate::graph::{ClearColor, Dependence, Graph};
+use crate::graph::{Dependence, Graph};
 use crate::shaders::types::ViewShare;
 use crate::shaders::vpl::{BlockFlux, BlockFluxPush, BlockSums, Share, SharePush, Vpls, VplsPush};
 
@@ -40,8 +40,6 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
         1,
     ]);
 
-    // What a pass both reads and writes starts from something, or it would count as changed in every frame.
-    graph.clear_image("diffuse/vpl/clear-sums", sums, ClearColor::Float([0.0; 4]));
     let pass = BlockSums {
         views: lights.views.clone(),
         blocks: blocks.sampled(),
@@ -50,7 +48,6 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
     };
     graph.pass("diffuse/vpl/block-sums", pass).groups([view_count, 1, 1]);
 
-    graph.fill_buffer("diffuse/vpl/clear-shares", shares, 0);
     let pass = Share {
         view_fluxes: view_fluxes.read(),
         shares: shares.write_then_read(),
