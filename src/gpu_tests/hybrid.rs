@@ -5,8 +5,9 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer};
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, quad, request, view};
 use super::session::Session;
+use crate::reference::traced_scene::{surfaces_key, traced_key};
 use crate::renderer::{ColorImage, Frame, FrameRequest, PassTiming, Preset, Settings, Slot, Technique, Timing};
-use crate::scene::{CameraView, LightKind, Material, Scene};
+use crate::scene::{CameraView, Light, LightId, LightKind, Material, Scene};
 
 const INDIRECT: [Slot; 2] = [Slot::Diffuse, Slot::Caustics];
 
@@ -117,6 +118,24 @@ fn only_what_sends_rays_builds_the_hierarchy() {
     for (name, changes) in [("ring", vec![]), ("cornell-point", vec![("vpl.bounces", "2")])] {
         assert!(bytes(name, &hybrid(Preset::Default, &changes)) > bytes(name, &rsm), "{name}, {changes:?}");
     }
+}
+
+/// A light that changes leaves the hierarchy as it is, and the picture is that of a hierarchy made for the light as it is now.
+#[test]
+fn the_hierarchy_outlasts_a_light_that_changes() {
+    let session = Session::open();
+    let settings = hybrid(Preset::Default, &[("vpl.visibility", "traced"), ("vpl.bounces", "2"), ("vpl.count", "32")]);
+    let (mut scene, mut renderer) = (builtin("ring"), session.renderer(&settings));
+    let keys = |scene: &Scene| (surfaces_key(scene), traced_key(scene));
+    renderer.render(&scene, &everything(&scene, [24, 16])).expect("a frame");
+    let before = keys(&scene);
+    let light = Light { intensity: [9.0, 1.0, 0.5], ..scene.lights()[0].clone() };
+    scene.set_light(LightId(0), light).expect("a sound light");
+    let after = keys(&scene);
+    assert!(before.0 == after.0 && before.1 != after.1, "the light alone changes");
+    let request = everything(&scene, [24, 16]);
+    let changed = renderer.render(&scene, &request).expect("a frame");
+    assert_eq!(changed.slots, session.render(&scene, &settings, &request).slots);
 }
 
 /// Photons that are traced through the hierarchy leave the passes of the diffuse light alone.

@@ -67,6 +67,8 @@ struct Corners {
 /// A scene on the device, ready for rays.
 pub(crate) struct TracedScene {
     pub(crate) key: u64,
+    /// Of what rays meet, whatever shines on it.
+    pub(crate) surfaces_key: u64,
     pub(crate) origin: DVec3,
     /// Of the sphere around the scene, metres.
     pub(crate) radius: f64,
@@ -178,6 +180,7 @@ impl TracedScene {
         let revisions = scene.revisions();
         Ok(TracedScene {
             key: traced_key(scene),
+            surfaces_key: surfaces_key(scene),
             origin,
             radius,
             facts,
@@ -244,6 +247,12 @@ impl TracedScene {
 pub(crate) fn traced_key(scene: &Scene) -> u64 {
     let revisions = scene.revisions();
     hash_of(&(scene.identity(), revisions.geometry, revisions.materials, revisions.lights))
+}
+
+/// The same of its surfaces alone.
+pub(crate) fn surfaces_key(scene: &Scene) -> u64 {
+    let revisions = scene.revisions();
+    hash_of(&(scene.identity(), revisions.geometry, revisions.materials))
 }
 
 /// What its alpha leaves of a surface.

@@ -10,7 +10,7 @@ use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Setti
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Graph, GraphDescription, Outgrown, Store};
-use crate::reference::traced_scene::{TracedScene, traced_key};
+use crate::reference::traced_scene::{TracedScene, surfaces_key, traced_key};
 use crate::scene::Scene;
 use crate::vulkan::{Device, VulkanError};
 
@@ -199,8 +199,14 @@ impl Renderer {
         self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
         self.data = Some(data);
         let (settings, facts) = (&self.settings, scene.facts());
-        let traces = Slot::ALL.into_iter().any(|slot| request.wants(slot) && sends_rays(settings, &facts, slot));
-        if traces && facts.lit() { self.traced_scene(scene).map(Some) } else { Ok(None) }
+        let traces = |slot| request.wants(slot) && sends_rays(settings, &facts, slot);
+        if !facts.lit() || !Slot::ALL.into_iter().any(traces) {
+            return Ok(None);
+        }
+        // Photons and VPLs come from the light views.
+        let to_lights = traces(Slot::Direct);
+        let held = self.traced.as_ref().filter(|held| !to_lights && held.surfaces_key == surfaces_key(scene)).cloned();
+        held.map_or_else(|| self.traced_scene(scene), Ok).map(Some)
     }
 
     /// The scene as rays meet it, built anew if geometry, materials or lights changed.
