@@ -301,3 +301,25 @@ fn what_stands_still_hardly_flickers() {
         assert!(found < 0.02, "{moves}: {found}");
     }
 }
+
+/// A renderer that was told to forget everything, or is asked for other images of the same frame, makes what a fresh one makes.
+#[test]
+fn what_is_made_again_is_the_same() {
+    for settings in variants().into_iter().chain([hybrid(Preset::Default, &[])]) {
+        let session = Session::open();
+        let (scene, mut renderer) = (builtin("ring"), session.renderer(&settings));
+        let all = everything(&scene, [64, 48]);
+        let fresh = session.render(&scene, &settings, &all);
+        let image_alone = FrameRequest { slots: Vec::new(), read_back: false, ..all.clone() };
+        for round in 0..3 {
+            renderer.invalidate();
+            for timing in [Timing::Passes, Timing::Frame] {
+                renderer.render(&scene, &FrameRequest { timing, ..image_alone.clone() }).expect("a frame");
+            }
+            let found = renderer.render(&scene, &all).expect("a frame");
+            for slot in INDIRECT {
+                assert_eq!(found.slots[&slot], fresh.slots[&slot], "{slot}, round {round}, {:?}", settings.options());
+            }
+        }
+    }
+}

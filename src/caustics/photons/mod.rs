@@ -123,7 +123,7 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
             (None, Some(lists)) if settings.trace == PhotonTracing::Lines => {
                 lines::trace(graph, &lists, &rays, choice.counts);
             }
-            (None, Some(lists)) => drop(march::trace(graph, &lists, &rays, choice.counts)),
+            (None, Some(lists)) => march::trace(graph, &lists, &rays, choice.counts),
             (None, None) => unreachable!("photons() has seen that there is something to trace through"),
         }
         land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));

@@ -6,7 +6,7 @@ use ash::vk;
 use super::records::{DISPATCH_WORD, STAGE_WORDS};
 use super::splat::{PARTS_WORD, RECORDS, ROWS_WORD, Splat, TileList};
 use crate::graph::Graph;
-use crate::graph::bindings::BufferRef;
+use crate::graph::bindings::ReadWriteBuffer;
 use crate::shaders::photon_splat::{Gather, GatherPush, Scan, ScanPush, Scatter, ScatterPush};
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
@@ -48,7 +48,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 
-    let gather = |result_sums: BufferRef<u32>, list: TileList, range: [i32; 2]| {
+    let gather = |sums: ReadWriteBuffer<u32>, list: TileList, range: [i32; 2]| {
         let (specular, has_specular) = splat.buffer.specular();
         Gather {
             camera: splat.buffer.camera.clone(),
@@ -65,7 +65,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
             sorted_irradiances: irradiances.texels(FLOATS),
             sorted_squeezes: squeezes.texels(FLOATS),
             result: splat.result.modify(),
-            sums: result_sums.read_write(),
+            sums,
             gaussian: splat.gaussian,
             elliptic: splat.elliptic,
             crowded: u32::from(list == TileList::Crowded),
@@ -79,13 +79,16 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         }
     };
     let list = TileList::Ordinary;
-    let pass = gather(sorted_count, list, [0, i32::MAX]);
+    // The order in which rows of cells take their places in the sorted list differs from run to run: no pass may make `scan` run again after
+    // `sort` has, as one that changed what `scan` leaves would.
+    let no_sums = graph.buffer::<u32>("photons.no_sums", 1).write_then_read();
+    let pass = gather(no_sums, list, [0, i32::MAX]);
     graph.pass(&list.pass_name("gather"), pass).threads_indirect(splat.state, list.word());
     if splat.may_crowd {
         let list = TileList::Crowded;
         for range in splat.ranges(graph) {
             splat.clear_sums(graph, list, range);
-            let pass = gather(range.sums, list, range.ends);
+            let pass = gather(range.sums.read_write(), list, range.ends);
             graph.pass(&range.pass_name(list, "gather"), pass).threads_indirect(splat.state, PARTS_WORD);
             splat.resolve(graph, list, range);
         }
