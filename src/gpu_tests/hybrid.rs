@@ -298,7 +298,7 @@ fn what_stands_still_hardly_flickers() {
         }
         let [found, least] = [flicker(&frames, &truth), flicker(&truth, &truth)];
         println!("{moves}: flicker {:.3} %, of the truth {:.3} %", 100.0 * found, 100.0 * least);
-        assert!(found < 0.02, "{moves}: {found}");
+        assert!(found < 0.04, "{moves}: {found}");
     }
 }
 
