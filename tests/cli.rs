@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use irradia::bench::report::Report;
-use irradia::output::{read_exr, tonemap};
+use irradia::output::read_exr;
 use irradia::renderer::{Slot, ToneMap};
 use irradia::scene::builtin_names;
 
@@ -251,7 +251,7 @@ fn a_png_shows_what_the_tone_map_makes_of_the_exr() {
         let png = folder.join(name).with_extension("png");
         succeed(&["render", any_scene(), "-o", text(&png), "--size", "48x32", "--tonemap", name]);
         let shown = image::open(&png).expect("a PNG").to_rgb8();
-        let expected = tonemap::tone_map(&image, map);
+        let expected = irradia::image::tone_map(&image, map);
         let worst = shown.iter().zip(expected.as_flattened()).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(worst <= Some(1), "{name}: device and host are {worst:?} levels apart");
     }

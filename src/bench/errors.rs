@@ -9,7 +9,7 @@ use super::run::{Finished, SlotImages, Subject};
 use crate::metrics::{self, MetricsError};
 use crate::reference::{
     Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, caustics_name,
-    estimator_name, sum,
+    estimator_name,
 };
 use crate::renderer::{ColorImage, Context, Settings, Slot};
 
@@ -124,7 +124,7 @@ impl<'a> References<'a> {
             mixed.slots.extend(of_slot.slots.get(&slot).map(|image| (slot, image.clone())));
             mixed.half_differences.extend(of_slot.half_differences.get(&slot).map(|image| (slot, image.clone())));
         }
-        mixed.image = sum(mixed.image.size, mixed.slots.values());
+        mixed.image = ColorImage::sum(mixed.image.size, mixed.slots.values());
         Ok(Rc::new(mixed))
     }
 
@@ -150,7 +150,7 @@ type Errors = (BTreeMap<String, ImageErrors>, BTreeMap<String, f64>);
 /// The errors of every slot that the contender fills, of their sum, and of the image, in which what it does not fill is missing.
 fn errors(images: &SlotImages, reference: &Reference) -> Result<Errors, ErrorsUnknown> {
     let filled: Vec<Slot> = images.slots.keys().copied().collect();
-    let covered = sum(images.image.size, images.slots.values());
+    let covered = ColorImage::sum(images.image.size, images.slots.values());
     let covered_reference = reference.sum_of(&filled);
     let (mut errors, mut noise) = (BTreeMap::new(), BTreeMap::new());
     let mut add = |part: &str, image: &ColorImage, truth: &ColorImage, slots: &[Slot]| {
@@ -192,7 +192,7 @@ mod tests {
         Reference {
             key: ReferenceKey::parse(&"0".repeat(64)).expect("64 digits"),
             spp: 64,
-            image: sum(SIZE, slots.values()),
+            image: ColorImage::sum(SIZE, slots.values()),
             slots,
             half_differences: Slot::ALL.into_iter().map(|slot| (slot, even(0.01))).collect(),
             noise: BTreeMap::new(),
@@ -207,7 +207,7 @@ mod tests {
         let settings = Settings::new(technique, Preset::Default);
         let filled = Slot::ALL.into_iter().filter(|slot| settings.methods.fills(*slot));
         let slots: BTreeMap<Slot, ColorImage> = filled.map(|slot| (slot, even(2.0))).collect();
-        let images = SlotImages { image: sum(SIZE, slots.values()), slots };
+        let images = SlotImages { image: ColorImage::sum(SIZE, slots.values()), slots };
         (Finished { run: example_run(), picture: None, images: Some(images) }, settings)
     }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
-use irradia::output::tonemap::tone_map;
+use irradia::image::tone_map;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::IMAGE;
 use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};

@@ -5,8 +5,8 @@ use ash::vk;
 use super::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
-use crate::renderer::Slot;
 use crate::shaders::compose::{Image, ImagePush};
+use crate::slot::Slot;
 
 /// Declares the pass that adds up the slots that there are; a slot that no method fills is `None`.
 pub(crate) fn compose(

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
+use super::light_options::LightSettings;
 use super::scene_data::SceneData;
 use super::view_layout::{Atlas, ViewShape, ViewSource};
 use crate::graph::hash_of;
-use crate::renderer::Settings;
 use crate::scene::{LightKind, PlacedLight, Scene};
 use crate::shaders::types;
 
@@ -34,12 +34,13 @@ impl LightSet {
         held: LightSet,
         scene: &Scene,
         data: &SceneData,
-        settings: &Settings,
+        settings: &LightSettings,
+        filter_radius: u32,
         largest_side: u32,
     ) -> LightSet {
         let revisions = scene.revisions();
         // Directional views are fitted to the geometry.
-        let options = serde_json::to_string(&(&settings.lights, &settings.shadow)).unwrap_or_default();
+        let options = serde_json::to_string(&(settings, filter_radius)).unwrap_or_default();
         let key = hash_of(&(scene.identity(), revisions.geometry, revisions.lights, options));
         if held.key == key {
             return held;
@@ -48,14 +49,14 @@ impl LightSet {
         builder.add_punctual(scene);
         builder.add_emitters(scene);
         builder.add_sky(scene);
-        let atlas = Atlas::new(builder.shapes, settings.shadow.filter_radius, largest_side);
+        let atlas = Atlas::new(builder.shapes, filter_radius, largest_side);
         LightSet { key, lights: builder.lights, atlas }
     }
 }
 
 struct Builder<'a> {
     data: &'a SceneData,
-    settings: &'a Settings,
+    settings: &'a LightSettings,
     lights: Vec<types::Light>,
     shapes: Vec<ViewShape>,
     /// All vertices in render space, gathered when the first directional light needs them.
@@ -89,8 +90,7 @@ impl Builder<'_> {
     fn add_punctual(&mut self, scene: &Scene) {
         for placed in shining_lights(scene) {
             let axes = axes_of(scene.world_transform(placed.node).matrix3);
-            let source =
-                self.source(placed.position - self.data.origin, self.settings.lights.resolution, placed.intensity);
+            let source = self.source(placed.position - self.data.origin, self.settings.resolution, placed.intensity);
             let light = punctual_light(&placed, self.data.origin);
             let shapes = match placed.kind {
                 LightKind::Point => ViewShape::cube(source, axes),
@@ -105,7 +105,7 @@ impl Builder<'_> {
     }
 
     fn add_emitters(&mut self, scene: &Scene) {
-        for sample in scene.emitter_samples(self.settings.lights.emitter_samples as usize) {
+        for sample in scene.emitter_samples(self.settings.emitter_samples as usize) {
             if sample.power.iter().all(|&channel| channel <= 0.0) {
                 continue;
             }
@@ -116,7 +116,7 @@ impl Builder<'_> {
                 let normal = sample.normal * *side;
                 let intensity = sample.power.map(|power| (f64::from(power) / (PI * sides.len() as f64)) as f32);
                 let position = sample.position - self.data.origin;
-                let source = self.source(position, self.settings.lights.emitter_resolution, intensity);
+                let source = self.source(position, self.settings.emitter_resolution, intensity);
                 let light = types::Light {
                     position_rs: position.as_vec3().to_array(),
                     kind: EMITTER,
@@ -140,7 +140,7 @@ impl Builder<'_> {
         if sky.iter().all(|&channel| channel <= 0.0) || scene.bounds().is_none() {
             return;
         }
-        let count = self.settings.lights.sky_samples;
+        let count = self.settings.sky_samples;
         let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
         for index in 0..count {
             let share = f64::from(index) + 0.5;
@@ -160,7 +160,7 @@ impl Builder<'_> {
                 range: 0.0,
                 view_count: 0,
             };
-            let source = self.source(DVec3::ZERO, self.settings.lights.resolution, intensity);
+            let source = self.source(DVec3::ZERO, self.settings.resolution, intensity);
             let shapes = self.parallel(scene, source, axes_around(direction, DMat3::IDENTITY));
             self.add(light, shapes);
         }

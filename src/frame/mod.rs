@@ -1,20 +1,20 @@
-//! What every technique shares: the scene on the device, G-buffer, light views, direct light, composition, tone mapping.
+//! What every technique shares: the scene on the device, what rays meet, G-buffer, light views, composition, tone mapping.
 //!
 //! Everything here works in *render space* (suffix `_rs`): the world's axes in metres, minus a fixed origin in the
 //! middle of the scene, so that a scene far from the world's origin loses no precision in 32-bit floats.
 
 pub(crate) mod camera;
 pub(crate) mod compose;
-pub(crate) mod direct;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;
+pub(crate) mod light_options;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod octahedral;
+pub(crate) mod rays;
 pub(crate) mod scene_data;
 pub(crate) mod textures;
 pub(crate) mod tonemap;
-pub(crate) mod traced_direct;
 #[cfg(test)]
 pub(crate) mod twins;
 pub(crate) mod view_layout;

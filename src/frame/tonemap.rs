@@ -1,8 +1,8 @@
-//! Display values: tone curve, sRGB encoding, 8 bits. `crate::output::tonemap` is the same on the host.
+//! Display values: tone curve, sRGB encoding, 8 bits. `crate::image` is the same on the host.
 
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::renderer::ToneMap;
+use crate::image::ToneMap;
 use crate::shaders::tonemap::{
     Adaptation, AdaptationPush, LogLuminance, LogLuminancePush, Luminance, LuminancePush, Map, MapPush,
 };

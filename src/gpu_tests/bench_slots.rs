@@ -2,7 +2,7 @@
 
 use super::session::Session;
 use crate::bench::{Options, Subject, run};
-use crate::reference::sum;
+use crate::image::ColorImage;
 use crate::renderer::{Preset, Settings, Slot, Technique};
 use crate::scene::Scene;
 
@@ -19,7 +19,7 @@ fn contenders_give_the_slots_that_they_fill_and_these_add_up() {
         let images = outcome.expect("it came through").images.expect("they were wanted");
         let filled = Slot::ALL.into_iter().filter(|slot| settings.methods.fills(*slot));
         assert!(images.slots.keys().copied().eq(filled));
-        let covered = sum(options.size, images.slots.values());
+        let covered = ColorImage::sum(options.size, images.slots.values());
         let values = covered.pixels.as_flattened().iter().zip(images.image.pixels.as_flattened());
         assert!(values.clone().any(|(a, _)| *a > 0.0));
         for (a, b) in values {

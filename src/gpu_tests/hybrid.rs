@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer};
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, quad, request, view};
 use super::session::Session;
-use crate::reference::traced_scene::{surfaces_key, traced_key};
+use crate::frame::rays::{surfaces_key, traced_key};
 use crate::renderer::{ColorImage, Frame, FrameRequest, PassTiming, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, Light, LightId, LightKind, Material, Scene};
 

@@ -7,9 +7,9 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer, assert_near, down, mean};
 use super::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, view};
 use super::session::Session;
-use crate::reference::PixelFilter;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, LightKind, Material, Scene};
+use crate::slot::PixelFilter;
 
 fn inside() -> CameraView {
     view(DVec3::new(0.7, 0.6, 0.8), DVec3::ZERO)

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::session::Session;
-use crate::reference::traced_scene::TracedScene;
-use crate::reference::tracer::{PathTracer, TraceCost};
-use crate::reference::{CausticPaths, Estimator, PixelFilter, ReferenceRequest};
+use crate::estimator::EstimateRequest;
+use crate::estimator::TraceCost;
+use crate::estimator::path::PathTracer;
+use crate::frame::rays::TracedScene;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, MaterialId, Primitive, Projection, Scene};
+use crate::slot::{CausticPaths, PixelFilter};
 use crate::vulkan::Device;
 
 /// A picture and what it is made of.
@@ -69,10 +71,9 @@ impl Tracer {
         if let Some(wanted) = ask.light_paths {
             tracer.set_light_paths(wanted);
         }
-        let view = tracer.view(&ReferenceRequest {
+        let view = tracer.view(&EstimateRequest {
             size: ask.size,
             camera: ask.camera.clone(),
-            estimator: Estimator::Path,
             bounces: ask.bounces,
             caustics: ask.caustics,
             filter: ask.filter,

@@ -7,9 +7,9 @@ use glam::{DAffine3, DVec3};
 use super::path_probe::{Ask, Tracer, solid_box, sphere, turned};
 use super::scenes::{add_light, lambert, place, quad, view};
 use super::session::Session;
-use crate::reference::CausticPaths;
 use crate::renderer::Slot;
 use crate::scene::{LightKind, Material, Scene};
+use crate::slot::CausticPaths;
 
 /// Of each half, with light paths and without.
 const SAMPLES: [u32; 2] = [64, 256];

@@ -9,10 +9,10 @@ use crate::frame::gbuffer::{View, gbuffer};
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::light_views;
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins::unpack_direction;
 use crate::graph::{Graph, Store};
-use crate::reference::traced_scene::TracedScene;
 use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
 use crate::scene::Scene;
 
@@ -106,7 +106,8 @@ impl OnDevice<'_> {
         let device = store.device().clone();
         let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
         let limit = device.limits().max_image_dimension2_d;
-        let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
+        let set =
+            LightSet::update(LightSet::default(), scene, &data, &settings.lights, settings.shadow.filter_radius, limit);
         let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
         OnDevice { scene, settings, store, data, set, traced }
     }

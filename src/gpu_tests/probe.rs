@@ -4,10 +4,10 @@ use glam::{DVec3, UVec4, Vec3, Vec4};
 
 use super::session::Session;
 use crate::frame::light_set::LightSet;
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins;
 use crate::graph::{Graph, ReadBack};
-use crate::reference::traced_scene::TracedScene;
 use crate::renderer::declare::{Declared, Prepared, declare, sends_rays};
 use crate::renderer::{FrameRequest, Settings, Slot, Timing};
 use crate::scene::Scene;
@@ -33,7 +33,8 @@ pub(super) fn probe(
     let device = store.device().clone();
     let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
     let limit = device.limits().max_image_dimension2_d;
-    let set = LightSet::update(LightSet::default(), scene, &data, settings, limit);
+    let set =
+        LightSet::update(LightSet::default(), scene, &data, &settings.lights, settings.shadow.filter_radius, limit);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
     let traces = Slot::ALL.into_iter().any(|slot| sends_rays(settings, &scene.facts(), slot));
     let traced = traces.then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));

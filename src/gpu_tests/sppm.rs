@@ -6,25 +6,18 @@ use glam::{DAffine3, DVec3};
 
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, view};
 use super::session::Session;
-use crate::reference::sppm::SppmSource;
-use crate::reference::traced_scene::TracedScene;
-use crate::reference::tracer::PathTracer;
-use crate::reference::{CausticPaths, Estimator, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
+use crate::estimator::path::PathTracer;
+use crate::estimator::sppm::SppmSource;
+use crate::estimator::{EstimateRequest, SampleSource, SlotSums};
+use crate::frame::rays::TracedScene;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Light, LightKind, LightSpec, Material, Scene};
+use crate::slot::{CausticPaths, PixelFilter};
 
 const SIZE: [u32; 2] = [64, 64];
 
-fn request(estimator: Estimator, size: [u32; 2], camera: CameraView, bounces: Option<u32>) -> ReferenceRequest {
-    ReferenceRequest {
-        size,
-        camera,
-        estimator,
-        bounces,
-        caustics: CausticPaths::All,
-        filter: PixelFilter::Box,
-        seed: 0,
-    }
+fn request(size: [u32; 2], camera: CameraView, bounces: Option<u32>) -> EstimateRequest {
+    EstimateRequest { size, camera, bounces, caustics: CausticPaths::All, filter: PixelFilter::Box, seed: 0 }
 }
 
 /// Means of all slots over all pixels and channels.
@@ -36,13 +29,13 @@ fn means(sums: &SlotSums) -> [f64; 5] {
 }
 
 fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, passes: u32) -> SlotSums {
-    let request = request(Estimator::Sppm, SIZE, camera.clone(), bounces);
-    let mut source = SppmSource::new(&session.context, scene, &request).expect("a scene that fits");
+    let request = request(SIZE, camera.clone(), bounces);
+    let mut source = SppmSource::new(session.context.shared_device(), scene, &request).expect("a scene that fits");
     source.sums(0, 0, passes).expect("sums")
 }
 
 fn by_paths(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, samples: u32) -> SlotSums {
-    let request = request(Estimator::Path, SIZE, camera.clone(), bounces);
+    let request = request(SIZE, camera.clone(), bounces);
     let device = session.context.shared_device();
     let mut tracer = PathTracer::new(device).expect("a tracer");
     tracer.set_scene(Arc::new(TracedScene::new(device, scene).expect("a scene that fits")));
@@ -138,11 +131,11 @@ fn equal_arguments_give_equal_bits() {
     let session = Session::open();
     let scene = builtin("ring");
     let camera = scene.camera_view(None).expect("its camera");
-    let request = request(Estimator::Sppm, [40, 24], camera, None);
-    let mut source = SppmSource::new(&session.context, &scene, &request).expect("a scene that fits");
+    let request = request([40, 24], camera, None);
+    let mut source = SppmSource::new(session.context.shared_device(), &scene, &request).expect("a scene that fits");
     let both = source.sums(1, 3, 2).expect("sums");
     assert_eq!(both, source.sums(1, 3, 2).expect("sums"), "twice by one source");
-    let mut other = SppmSource::new(&session.context, &scene, &request).expect("a scene that fits");
+    let mut other = SppmSource::new(session.context.shared_device(), &scene, &request).expect("a scene that fits");
     let parts = [other.sums(1, 3, 1).expect("sums"), other.sums(1, 4, 1).expect("sums")];
     assert_eq!(both, other.sums(1, 3, 2).expect("sums"), "by another source");
     for (index, pixels) in both.slots.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::scenes::{builtin, closed_box, lambert, request, settings, view};
 use super::session::Session;
-use crate::output::tonemap::tone_map;
+use crate::image::tone_map;
 use crate::renderer::{FrameRequest, ToneMap};
 use crate::scene::Scene;
 use glam::DVec3;

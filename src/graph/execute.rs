@@ -10,8 +10,8 @@ use super::demand::{Needs, Verdict, Version, decide};
 use super::needs::{READ_ONLY_DEPTH, layout_of, merged_needs};
 use super::pass::{ClearColor, DrawList, Draws, Pass, Targets, Work};
 use super::store::{MAX_COUNTERS, MAX_PASSES};
+use super::timing::{PassTiming, Timing};
 use super::{Body, Graph};
-use crate::renderer::{PassTiming, Timing};
 use crate::vulkan::program::{BindingKind, ImageDim};
 use crate::vulkan::{
     Attachment, Attachments, Barriers, Buffer, Descriptor, Image, ImageBarrier, Pipeline, Scope, SubresourceView,

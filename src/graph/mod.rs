@@ -22,6 +22,7 @@ mod needs;
 mod pass;
 mod read_back;
 mod store;
+mod timing;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::marker::PhantomData;
@@ -38,6 +39,7 @@ pub(crate) use execute::{Executed, Outgrown, ReadBack};
 pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList, PassBuilder};
 use pass::{Pass, Work};
 pub(crate) use store::Store;
+pub use timing::{FrameTimings, PassTiming, Timing};
 
 /// What a content depends on, for the reasons that tables give.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

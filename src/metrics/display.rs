@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::output::tonemap::{Adaptation, quantize, tone_map_pixels};
-use crate::renderer::{ColorImage, ToneMap};
+use crate::image::{Adaptation, ColorImage, ToneMap, quantize, tone_map_pixels};
 
 /// Weights of Rec.709's luma, a weighted sum of encoded values.
 const LUMA_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];

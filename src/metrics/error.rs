@@ -1,6 +1,6 @@
 //! Why two images cannot be compared.
 
-use crate::renderer::ColorImage;
+use crate::image::ColorImage;
 
 /// Which of the two images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::MetricsError;
 use super::error::{check_sizes, find_unsound};
-use crate::output::tonemap::luminance;
-use crate::renderer::ColorImage;
+use crate::image::{ColorImage, luminance};
 
 /// The relative errors that the colours span: the lower one and all below are black, the upper one and all above almost white.
 pub const HEAT_MAP_RANGE: [f64; 2] = [1e-3, 10.0];

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use irradia::metrics::{compare, rmse};
-//! use irradia::renderer::ColorImage;
+//! use irradia::image::ColorImage;
 //!
 //! # fn main() -> Result<(), irradia::metrics::MetricsError> {
 //! let reference = ColorImage { size: [2, 1], pixels: vec![[1.0; 3], [3.0; 3]] };
@@ -33,7 +33,7 @@ use serde::{Deserialize, Serialize};
 pub use self::error::{MetricsError, Side};
 pub use self::heat_map::{HEAT_MAP_RANGE, HeatMap, heat_map};
 pub use self::radiance::{RadianceErrors, radiance_errors, rmse};
-use crate::renderer::ColorImage;
+use crate::image::ColorImage;
 
 /// How far an image is from a reference. The names are those of the JSON reports, which write infinity as null.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

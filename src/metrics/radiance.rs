@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::MetricsError;
 use super::error::{check_sizes, find_unsound};
-use crate::output::tonemap::LUMINANCE_WEIGHTS;
-use crate::renderer::ColorImage;
+use crate::image::{ColorImage, LUMINANCE_WEIGHTS};
 
 /// ε of `relmse` over the mean of the reference: below a hundredth of the mean an error counts as if the reference were that bright.
 const EPSILON_SHARE_OF_MEAN: f64 = 0.01;

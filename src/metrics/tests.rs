@@ -1,7 +1,7 @@
 use rand_pcg::rand_core::Rng;
 
 use super::*;
-use crate::output::tonemap::{Adaptation, aces, srgb_encode};
+use crate::image::{Adaptation, aces, srgb_encode};
 
 fn image(size: [u32; 2], pixel: impl FnMut(usize) -> [f32; 3]) -> ColorImage {
     ColorImage { size, pixels: (0..size[0] as usize * size[1] as usize).map(pixel).collect() }

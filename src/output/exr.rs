@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::layers::{Layers, read_layers, write_layers};
 use super::{Attributes, OutputError};
-use crate::renderer::{ColorImage, Slot};
+use crate::image::ColorImage;
+use crate::slot::Slot;
 
 /// What an EXR file of ours holds.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,6 @@ mod layers;
 mod png;
 mod seal;
 mod supersample;
-pub mod tonemap;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

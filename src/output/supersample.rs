@@ -1,6 +1,6 @@
 //! Supersampling: means of blocks of pixels.
 
-use crate::renderer::ColorImage;
+use crate::image::ColorImage;
 
 /// The image with `factor` by `factor` pixels averaged into one; sides are divided by `factor`, what is left over is cut off.
 pub fn box_reduced(image: &ColorImage, factor: u32) -> ColorImage {

@@ -11,7 +11,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::SlotSums;
-use crate::renderer::Slot;
+use crate::slot::Slot;
 
 /// Samples of every pixel in a chunk of one half; a power of two.
 pub const CHUNK_SAMPLES: u32 = 8;

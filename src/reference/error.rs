@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::method::Error;
 use crate::output::OutputError;
-use crate::renderer::Error;
 
 /// Why a reference could not be made, read or merged.
 #[derive(Debug, thiserror::Error)]

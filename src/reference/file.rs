@@ -14,7 +14,7 @@ use super::about::{About, Spent};
 use super::blocks::{Block, HALVES, MAX_LEVEL, SlotPixels, State};
 use super::{Reference, ReferenceError, ReferenceKey, Shard};
 use crate::output::{Attributes, OutputError, SealedError, read_sealed_layers, write_sealed_layers};
-use crate::renderer::Slot;
+use crate::slot::Slot;
 
 /// A reference or a shard of one, with all that is needed to go on with it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! What tells references apart: a hash of everything that decides what they show.
 
-use crate::renderer::Slot;
 use crate::scene::{CameraView, Digest, Projection, Scene};
+use crate::slot::Slot;
 
 use super::{CausticPaths, Estimator, PixelFilter, ReferenceRequest};
 

@@ -6,10 +6,12 @@ use std::time::{Duration, Instant};
 
 use super::about::{About, Spent};
 use super::blocks::{Block, CHUNK_SAMPLES, MAX_LEVEL, SAMPLES_PER_CHUNK};
+use super::request::source;
 use super::shard::chunks_of;
 use super::{Cache, Reference, ReferenceError, ReferenceFile, ReferenceRequest, SampleSource, Shard};
+use crate::method::Error;
 use crate::output::OutputError;
-use crate::renderer::{Context, Error};
+use crate::renderer::Context;
 use crate::scene::Scene;
 
 /// The most samples per pixel of a reference.
@@ -93,7 +95,7 @@ impl<'a> Job<'a> {
         Work {
             about: About::new(scene, scene_name, request),
             device: context.device().name,
-            source: Box::new(move || super::source(context, scene, request)),
+            source: Box::new(move || source(context, scene, request)),
         }
     }
 }

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{Noise, ReferenceFile, ReferenceKey};
-use crate::renderer::{ColorImage, Slot};
-
-/// The name of the sum of all slots among the parts of [`Reference::noise`].
-pub const IMAGE: &str = "image";
+use crate::image::ColorImage;
+use crate::slot::{IMAGE, Slot};
 
 /// A reference: means over all of its samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +67,7 @@ impl Reference {
 
     /// The sum of some slots.
     pub fn sum_of(&self, slots: &[Slot]) -> ColorImage {
-        sum(self.image.size, slots.iter().filter_map(|slot| self.slots.get(slot)))
+        ColorImage::sum(self.image.size, slots.iter().filter_map(|slot| self.slots.get(slot)))
     }
 
     /// The noise of the image: `rrmse` of [`Reference::noise`].
@@ -80,15 +78,4 @@ impl Reference {
 
 fn pixels<'a>(images: &'a BTreeMap<Slot, ColorImage>, slots: &[Slot]) -> Vec<&'a [[f32; 3]]> {
     slots.iter().filter_map(|slot| Some(&images.get(slot)?.pixels[..])).collect()
-}
-
-/// The sum of some images of one size.
-pub(crate) fn sum<'a>(size: [u32; 2], images: impl Iterator<Item = &'a ColorImage>) -> ColorImage {
-    let mut pixels = vec![[0.0_f32; 3]; size[0] as usize * size[1] as usize];
-    for image in images {
-        for (sum, pixel) in pixels.iter_mut().zip(&image.pixels) {
-            *sum = std::array::from_fn(|channel| sum[channel] + pixel[channel]);
-        }
-    }
-    ColorImage { size, pixels }
 }

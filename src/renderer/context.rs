@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Error;
+use crate::method::Error;
 use crate::vulkan::{self, ContextOptions, Device, DeviceReport};
 
 /// A Vulkan device. Cloning shares it; it is destroyed with the last renderer on it.

@@ -1,24 +1,26 @@
 //! Which pieces a frame consists of: the settings' methods, as far as the scene and the request need them.
 
-use super::{CausticsMethod, DiffuseMethod, DirectMethod, FrameRequest, PhotonTracing, Settings, Slot, VplVisibility};
-use crate::caustics::photons::{PhotonInputs, photons};
+use super::frame::FrameRequest;
+use super::settings::{CausticsMethod, DiffuseMethod, DirectMethod, Settings};
+use crate::caustics::photons::{PhotonInputs, PhotonTracing, photons};
 use crate::diffuse::rsm::{Rsm, rsm};
-use crate::diffuse::vpl::{Vpl, VplInputs, vpl};
+use crate::diffuse::vpl::{Vpl, VplInputs, VplVisibility, vpl};
+use crate::direct::shadow_map::shadow_map;
+use crate::direct::traced::traced;
 use crate::frame::camera::camera;
 use crate::frame::compose::compose;
-use crate::frame::direct::shadow_map;
 use crate::frame::gbuffer::{GBuffer, View, gbuffer};
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews, light_views};
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::tonemap::tonemap;
-use crate::frame::traced_direct::traced;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::reference::traced_scene::TracedScene;
 use crate::scene::{Facts, Scene};
 use crate::shaders::types;
+use crate::slot::Slot;
 
 /// What a declared frame offers; absent where a method, the scene or the request leaves it out.
 pub(crate) struct Declared {

@@ -20,27 +20,30 @@
 
 mod context;
 pub(crate) mod declare;
-mod error;
 mod frame;
-mod options;
 mod path_frame;
 mod render;
 mod settings;
-mod slots;
+mod traced_paths;
 
 pub use context::Context;
-pub use error::Error;
-pub use frame::{ColorImage, Estimate, Frame, FrameRequest, FrameTimings, PassTiming, Timing, ToneMap};
-pub use options::{
-    LightSettings, ListProjection, PathSettings, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings,
-    PhotonSplatting, PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading,
-    VplVisibility,
-};
+pub use frame::{Estimate, Frame, FrameRequest};
 pub use render::Renderer;
 pub use settings::{
-    CausticsMethod, DiffuseMethod, DirectMethod, Methods, Preset, Settings, SettingsError, SpecularMethod, Technique,
+    CausticsMethod, DiffuseMethod, DirectMethod, Methods, Settings, SettingsError, SpecularMethod, Technique,
 };
-pub use slots::Slot;
 
-pub use crate::graph::GraphDescription;
+pub use crate::caustics::photons::{
+    ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
+};
+pub use crate::diffuse::rsm::RsmSettings;
+pub use crate::diffuse::vpl::{VplSettings, VplShading, VplVisibility};
+pub use crate::direct::shadow_map::ShadowSettings;
+pub use crate::direct::traced::TracedSettings;
+pub use crate::estimator::PathSettings;
+pub use crate::frame::light_options::LightSettings;
+pub use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing};
+pub use crate::image::{ColorImage, ToneMap};
+pub use crate::method::{Error, Preset, UnknownPreset};
+pub use crate::slot::Slot;
 pub use crate::vulkan::{ContextOptions, DeviceReport, Validation, VulkanError};

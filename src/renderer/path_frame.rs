@@ -3,41 +3,18 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::render::black;
-use super::{
-    CausticsMethod, ColorImage, DiffuseMethod, DirectMethod, Error, Estimate, Frame, FrameRequest, FrameTimings,
-    Methods, Renderer, Settings, Slot, SpecularMethod,
-};
-use crate::graph::{GraphDescription, hash_of};
-use crate::output::tonemap::tone_map;
-use crate::reference::traced_scene::traced_key;
-use crate::reference::tracer::{PathTracer, TraceCost};
-use crate::reference::{CausticPaths, Estimator, IMAGE, Noise, ReferenceRequest, SlotSums};
+use super::frame::{Frame, FrameRequest};
+use super::render::Renderer;
+use super::settings::{CausticsMethod, DiffuseMethod, DirectMethod, Methods, Settings, SpecularMethod};
+use super::traced_paths::{Traced, TracedPaths, mean_of_samples};
+use crate::estimator::path::PathTracer;
+use crate::estimator::{EstimateRequest, TraceCost};
+use crate::frame::rays::traced_key;
+use crate::graph::{FrameTimings, GraphDescription, hash_of};
+use crate::image::{ColorImage, tone_map};
+use crate::method::Error;
 use crate::scene::Scene;
-use crate::vulkan::VulkanError;
-
-/// The tracer of a renderer, and its last result.
-pub(crate) struct TracedPaths {
-    tracer: PathTracer,
-    held: Option<(u64, Traced)>,
-}
-
-/// What the samples of a frame come to.
-#[derive(Clone)]
-struct Traced {
-    slots: BTreeMap<Slot, ColorImage>,
-    estimate: Estimate,
-}
-
-impl TracedPaths {
-    pub(super) fn invalidate(&mut self) {
-        self.held = None;
-    }
-
-    pub(super) fn release_scene(&mut self) {
-        self.tracer.release_scene();
-    }
-}
+use crate::slot::{CausticPaths, Slot};
 
 impl Methods {
     /// The slots that paths are traced for. The surfaces' own emission is found on the way if `direct` is traced too.
@@ -87,7 +64,7 @@ impl Renderer {
         let (size, estimate) = (request.size, Some(estimate));
         let mut frame = Frame { size, image: None, slots: BTreeMap::new(), display: None, estimate, timings };
         if request.read_back || request.tonemap.is_some() {
-            let image = sum_of(slots.values(), request.size);
+            let image = ColorImage::sum(request.size, slots.values());
             frame.display = request.tonemap.map(|map| tone_map(&image, map));
             frame.image = (request.image && request.read_back).then_some(image);
         }
@@ -107,12 +84,11 @@ impl Renderer {
         Ok(tracer.describe(&view)?)
     }
 
-    fn asked_of_paths(&self, request: &FrameRequest) -> ReferenceRequest {
+    fn asked_of_paths(&self, request: &FrameRequest) -> EstimateRequest {
         let settings = &self.settings.path;
-        ReferenceRequest {
+        EstimateRequest {
             size: request.size,
             camera: request.camera.clone(),
-            estimator: Estimator::Path,
             bounces: settings.bounces,
             caustics: CausticPaths::All,
             filter: settings.filter,
@@ -162,69 +138,4 @@ impl Renderer {
         timings.memory_bytes = paths.tracer.memory_bytes();
         Ok(made)
     }
-}
-
-impl FrameTimings {
-    /// Adds what another part of the same frame cost.
-    fn add(&mut self, other: FrameTimings) {
-        self.gpu_ms += other.gpu_ms;
-        self.upload_ms += other.upload_ms;
-        self.pipeline_ms += other.pipeline_ms;
-        self.passes.extend(other.passes);
-        for (piece, bytes) in other.memory_bytes {
-            *self.memory_bytes.entry(piece).or_insert(0) += bytes;
-        }
-    }
-}
-
-/// Half of the samples from each of the reference's two halves, A and B, with a and b samples. As the halves are independent, the
-/// difference of their means times √(ab)/(a + b) has the variance of the mean of all samples.
-fn mean_of_samples(
-    tracer: &mut PathTracer,
-    request: &ReferenceRequest,
-    spp: u32,
-    traced: &[Slot],
-) -> Result<Traced, VulkanError> {
-    let view = tracer.view(request);
-    let (a, b) = (spp.div_ceil(2), spp / 2);
-    let first = tracer.sums(&view, 0, 0, a)?;
-    let mut estimate = Estimate { spp, ..Estimate::default() };
-    let halves: Vec<SlotSums> = if b > 0 { vec![first, tracer.sums(&view, 1, 0, b)?] } else { vec![first] };
-    let mut slots = BTreeMap::new();
-    let mut differences = Vec::new();
-    for (index, slot) in Slot::ALL.into_iter().enumerate().filter(|(_, slot)| traced.contains(slot)) {
-        let sum =
-            |pixel: usize, channel: usize| halves.iter().map(|half| half.slots[index][pixel][channel]).sum::<f32>();
-        let count = halves[0].slots[index].len();
-        let pixels = (0..count).map(|pixel| [0, 1, 2].map(|channel| sum(pixel, channel) / spp as f32)).collect();
-        slots.insert(slot, ColorImage { size: request.size, pixels });
-        if let [first, second] = &halves[..] {
-            let scale = (a as f32 * b as f32).sqrt() / spp as f32;
-            let difference: Vec<[f32; 3]> = first.slots[index]
-                .iter()
-                .zip(&second.slots[index])
-                .map(|(x, y)| [0, 1, 2].map(|channel| (x[channel] / a as f32 - y[channel] / b as f32) * scale))
-                .collect();
-            differences.push((slot, difference));
-        }
-    }
-    for (slot, difference) in &differences {
-        estimate.noise.insert(slot.name().to_owned(), Noise::of_sum(&[&slots[slot].pixels], &[difference]));
-    }
-    if !differences.is_empty() {
-        let images: Vec<&[[f32; 3]]> = slots.values().map(|image| &image.pixels[..]).collect();
-        let halves: Vec<&[[f32; 3]]> = differences.iter().map(|(_, difference)| &difference[..]).collect();
-        estimate.noise.insert(IMAGE.to_owned(), Noise::of_sum(&images, &halves));
-    }
-    Ok(Traced { slots, estimate })
-}
-
-fn sum_of<'a>(slots: impl Iterator<Item = &'a ColorImage>, size: [u32; 2]) -> ColorImage {
-    let mut sum = black(size);
-    for slot in slots {
-        for (pixel, other) in sum.pixels.iter_mut().zip(&slot.pixels) {
-            *pixel = [0, 1, 2].map(|channel| pixel[channel] + other[channel]);
-        }
-    }
-    sum
 }

@@ -4,14 +4,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::context::Context;
 use super::declare::{Prepared, declare, sends_rays};
-use super::path_frame::TracedPaths;
-use super::{ColorImage, Context, Error, Frame, FrameRequest, FrameTimings, Settings, Slot};
+use super::frame::{Frame, FrameRequest};
+use super::settings::Settings;
+use super::traced_paths::TracedPaths;
 use crate::frame::light_set::LightSet;
+use crate::frame::rays::{TracedScene, surfaces_key, traced_key};
 use crate::frame::scene_data::SceneData;
-use crate::graph::{Graph, GraphDescription, Outgrown, Store};
-use crate::reference::traced_scene::{TracedScene, surfaces_key, traced_key};
+use crate::graph::{FrameTimings, Graph, GraphDescription, Outgrown, Store};
+use crate::image::ColorImage;
+use crate::method::Error;
 use crate::scene::Scene;
+use crate::slot::Slot;
 use crate::vulkan::{Device, VulkanError};
 
 /// Makes frames with one set of settings on one device.
@@ -128,8 +133,8 @@ impl Renderer {
         frame.image = image.map(|read_back| color_image(size, &executed.take(read_back)));
         if request.read_back {
             for (slot, read_back) in slots {
-                let image =
-                    read_back.map_or_else(|| black(size), |read_back| color_image(size, &executed.take(read_back)));
+                let image = read_back
+                    .map_or_else(|| ColorImage::black(size), |read_back| color_image(size, &executed.take(read_back)));
                 frame.slots.insert(slot, image);
             }
         }
@@ -196,7 +201,14 @@ impl Renderer {
         let device = self.store.device().clone();
         let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
-        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, &self.settings, limit);
+        self.lights = LightSet::update(
+            std::mem::take(&mut self.lights),
+            scene,
+            &data,
+            &self.settings.lights,
+            self.settings.shadow.filter_radius,
+            limit,
+        );
         self.data = Some(data);
         let (settings, facts) = (&self.settings, scene.facts());
         let traces = |slot| request.wants(slot) && sends_rays(settings, &facts, slot);
@@ -239,8 +251,4 @@ fn color_image(size: [u32; 2], bytes: &[u8]) -> ColorImage {
     let pixels =
         bytes.chunks_exact(16).map(|texel| [float(&texel[0..4]), float(&texel[4..8]), float(&texel[8..12])]).collect();
     ColorImage { size, pixels }
-}
-
-pub(super) fn black(size: [u32; 2]) -> ColorImage {
-    ColorImage { size, pixels: vec![[0.0; 3]; size[0] as usize * size[1] as usize] }
 }

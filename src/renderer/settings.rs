@@ -3,13 +3,17 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::options::{
-    LightSettings, ListProjection, PathSettings, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings,
-    PhotonSplatting, PhotonTracing, RsmSettings, ShadowSettings, TracedSettings, VplSettings, VplShading,
-    VplVisibility, choices,
+use crate::caustics::photons::{
+    ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
 };
-use super::slots::Slot;
-use crate::reference::{CausticPaths, PixelFilter};
+use crate::diffuse::rsm::RsmSettings;
+use crate::diffuse::vpl::{VplSettings, VplShading, VplVisibility};
+use crate::direct::shadow_map::ShadowSettings;
+use crate::direct::traced::TracedSettings;
+use crate::estimator::PathSettings;
+use crate::frame::light_options::LightSettings;
+use crate::method::{Preset, choices};
+use crate::slot::{CausticPaths, PixelFilter, Slot};
 
 /// A setting that does not exist or does not take the value given. One sentence: what, where, what to do.
 #[derive(Debug, thiserror::Error)]
@@ -17,9 +21,6 @@ pub enum SettingsError {
     /// No technique of this name.
     #[error("there is no technique {0:?}; techniques: {known}", known = Technique::names().join(", "))]
     UnknownTechnique(String),
-    /// No preset of this name.
-    #[error("there is no preset {0:?}; presets: draft, default, high, paper")]
-    UnknownPreset(String),
     /// The slot has no method of this name.
     #[error("the {slot} slot has no method {method:?}; its methods: {known}")]
     UnknownMethod {
@@ -108,42 +109,6 @@ impl Technique {
                 specular: SpecularMethod::Path,
             },
         }
-    }
-}
-
-/// A trade of time against error, fixed per method by measurement.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Preset {
-    /// Fast, for looking around.
-    Draft,
-    /// The default.
-    #[default]
-    Default,
-    /// Slower, closer to the truth.
-    High,
-    /// The settings of the method's paper.
-    Paper,
-}
-
-impl Preset {
-    /// All presets.
-    pub const ALL: [Preset; 4] = [Preset::Draft, Preset::Default, Preset::High, Preset::Paper];
-
-    /// The name used on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Preset::Draft => "draft",
-            Preset::Default => "default",
-            Preset::High => "high",
-            Preset::Paper => "paper",
-        }
-    }
-
-    /// The preset called `name`.
-    pub fn from_name(name: &str) -> Result<Preset, SettingsError> {
-        let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
-        found.ok_or_else(|| SettingsError::UnknownPreset(name.to_owned()))
     }
 }
 

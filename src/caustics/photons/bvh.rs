@@ -3,10 +3,10 @@
 use ash::vk;
 
 use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
+use crate::frame::rays::{TracedBindings, TracedScene};
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
-use crate::reference::traced_scene::{TracedBindings, TracedScene};
 use crate::shaders::photons::{Trace, TracePush};
 
 /// From render space to that of the traced scene.

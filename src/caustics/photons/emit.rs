@@ -4,13 +4,13 @@ use ash::vk;
 
 use super::PhotonInputs;
 use super::choose::{CHOICE_EMIT, Choice};
+use super::options::PhotonFootprint;
 use super::records::{PhotonRays, STAGE_WORDS};
 use super::views::SpecularViews;
 use crate::frame::light_set::LightSet;
 use crate::frame::view_layout::TILE;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
-use crate::renderer::PhotonFootprint;
 use crate::shaders::photons::{Emit, EmitPush, Scatter, ScatterPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;

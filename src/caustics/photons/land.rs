@@ -6,10 +6,10 @@ use super::PhotonInputs;
 use super::bvh::shift;
 use super::choose::Choice;
 use super::emit::Arrivals;
+use super::options::PhotonFootprint;
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
+use crate::frame::rays::{TracedBindings, TracedScene};
 use crate::graph::Graph;
-use crate::reference::traced_scene::{TracedBindings, TracedScene};
-use crate::renderer::PhotonFootprint;
 use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
+use super::options::{ListProjection, PhotonSettings};
 use crate::frame::geometry::DrawView;
 use crate::frame::scene_data::{DrawnInstance, SceneData};
-use crate::renderer::{ListProjection, PhotonSettings};
 use crate::shaders::types;
 
 /// Texels around the scene. What ends at its bounds, such as a room's floor, ends between two texels then, and lacks no sliver.

@@ -8,11 +8,11 @@ use ash::vk;
 
 use super::layers;
 use super::list_views::{ListView, list_views};
+use super::options::{ListProjection, PhotonGeometry, PhotonSettings};
 use crate::frame::geometry::{Attributes, DrawView, Geometry, draw_list};
 use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
-use crate::renderer::{ListProjection, PhotonGeometry, PhotonSettings};
 use crate::shaders::photon_lists::{
     Append, AppendMasked, AppendMaskedPush, AppendPush, Coarser, CoarserPush, Occupancy, OccupancyPush,
 };

@@ -15,6 +15,7 @@ pub(crate) mod lines;
 mod list_views;
 pub(crate) mod lists;
 pub(crate) mod march;
+mod options;
 pub(crate) mod records;
 pub(crate) mod splat;
 pub(crate) mod sums;
@@ -26,16 +27,19 @@ use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::LightViews;
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::reference::traced_scene::TracedScene;
-use crate::renderer::{PhotonSettings, PhotonTracing};
 use crate::scene::Facts;
 use crate::shaders::types;
 use emit::Arrivals;
 use records::{LandedPhotons, PhotonRays};
 use splat::{SplatInputs, splat};
+
+pub use self::options::{
+    ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
+};
 
 /// What every device lets a kernel see of one buffer, bytes.
 const LARGEST_BUFFER: u32 = 1 << 27;

@@ -19,13 +19,13 @@ use ash::vk;
 
 use super::discs::discs;
 use super::grid::Grid;
+use super::options::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
 use super::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
 use super::tiles::tiles;
 use super::upsample::upsample;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
 use crate::graph::{ClearColor, Graph};
-use crate::renderer::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
 use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).

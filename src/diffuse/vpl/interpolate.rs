@@ -1,10 +1,10 @@
 //! From irradiance at regions to radiance at pixels, coarse to fine.
 
+use super::options::VplSettings;
 use super::pyramid::{Pyramid, signed};
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
-use crate::renderer::VplSettings;
 use crate::shaders::vpl::{Interpolate, InterpolatePush, Resolve, ResolvePush};
 
 /// Declares the passes, one a level; `irradiance` is the flattened image.

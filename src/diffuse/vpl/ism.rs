@@ -6,12 +6,12 @@
 
 use ash::vk;
 
+use super::options::VplSettings;
 use super::vpl_count;
 use crate::frame::geometry::Geometry;
 use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
-use crate::renderer::VplSettings;
 use crate::shaders::ism::{
     Areas, AreasPush, Fill, FillPush, Points, PointsPush, Pull, PullPush, Push, PushPush, Scan, ScanPush, Splat,
     SplatPush,

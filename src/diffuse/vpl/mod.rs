@@ -3,6 +3,7 @@
 mod gather;
 pub(crate) mod interpolate;
 mod ism;
+mod options;
 mod paths;
 pub(crate) mod pyramid;
 pub(crate) mod regions;
@@ -15,12 +16,13 @@ use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::reference::traced_scene::TracedScene;
-use crate::renderer::{VplSettings, VplShading};
 use visibility::{Rays, Visibility};
+
+pub use self::options::{VplSettings, VplShading, VplVisibility};
 
 /// What the method takes.
 pub(crate) struct VplInputs<'a> {

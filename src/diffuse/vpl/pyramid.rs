@@ -2,10 +2,10 @@
 
 use ash::vk;
 
+use super::options::VplSettings;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::renderer::VplSettings;
 use crate::shaders::vpl::{FirstRegions, FirstRegionsPush, LargerRegions, LargerRegionsPush};
 use crate::vulkan::ImageInfo;
 

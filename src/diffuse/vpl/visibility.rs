@@ -5,9 +5,9 @@ use glam::DVec3;
 
 use super::VplInputs;
 use super::ism::imperfect_shadow_maps;
+use super::options::VplVisibility;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
 use crate::graph::{Dependence, Graph};
-use crate::renderer::VplVisibility;
 use crate::shaders::types::VplRays;
 
 /// How far from a VPL's surface rays end or start, as a share of the scene's radius.

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat};
 
 use super::*;
-use crate::scene::{Alpha, Light, LightKind, Material, Mesh, Node, Primitive, Texture, TextureRef, Wrap};
+use crate::scene::{Alpha, Light, LightKind, Material, Mesh, Node, Primitive, Scene, Texture, TextureRef, Wrap};
 
 /// The parts of a small scene, so that each can be changed before they are put together.
 struct Parts {

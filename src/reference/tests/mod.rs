@@ -14,8 +14,9 @@ use glam::DVec3;
 use super::about::About;
 use super::obtain::Work;
 use super::*;
-use crate::renderer::Slot;
-use crate::scene::Projection;
+use crate::method::Error;
+use crate::scene::{CameraView, Projection, Scene};
+use crate::slot::Slot;
 
 pub(super) const SIZE: [u32; 2] = [24, 16];
 

@@ -1,4 +1,4 @@
-//! Tone maps: linear radiance to 8-bit sRGB display values, on the host. The device's passes compute the same.
+//! Colour images, and the tone maps that turn linear radiance into 8-bit sRGB display values on the host. The device's passes compute the same.
 //!
 //! `aces` first exposes the image: radiance is scaled so that its log-average luminance becomes [`KEY`] (Reinhard et al.
 //! 2002, eq. 1 and 2). `drago` takes the log-average as the luminance that the eye is adapted to, and luminances in units
@@ -6,8 +6,47 @@
 //! white. All map [0, ∞) to [0, 1], ascending, and 0 to 0.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
-use crate::renderer::{ColorImage, ToneMap};
+/// How linear radiance becomes display values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ToneMap {
+    /// Drago et al. 2003, adaptive logarithmic mapping.
+    Drago,
+    /// The ACES filmic fit of Narkowicz 2015, after exposure to the log-average luminance.
+    #[default]
+    Aces,
+    /// Radiance 1 is white; values are clamped. No exposure.
+    Linear,
+}
+
+/// An RGB image in row-major order from the top left, linear Rec.709 radiance, W/(m² sr).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorImage {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// `size[0] * size[1]` pixels.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl ColorImage {
+    /// A black image.
+    pub fn black(size: [u32; 2]) -> ColorImage {
+        ColorImage { size, pixels: vec![[0.0; 3]; size[0] as usize * size[1] as usize] }
+    }
+
+    /// The sum of some images of one size; black if there are none.
+    pub fn sum<'a>(size: [u32; 2], images: impl IntoIterator<Item = &'a ColorImage>) -> ColorImage {
+        let mut sum = ColorImage::black(size);
+        for image in images {
+            for (sum, pixel) in sum.pixels.iter_mut().zip(&image.pixels) {
+                *sum = std::array::from_fn(|channel| sum[channel] + pixel[channel]);
+            }
+        }
+        sum
+    }
+}
 
 /// The luminance that `aces` exposes the scene's log-average to: a mid-grey of 18 %.
 pub const KEY: f32 = 0.18;

@@ -5,13 +5,12 @@
 
 use ash::vk;
 
-use super::traced_scene::{TracedBindings, TracedScene};
-use super::tracer::View;
-use super::{CausticPaths, PixelFilter};
+use super::view::View;
+use crate::frame::rays::{TracedBindings, TracedScene};
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
 use crate::graph::{Dependence, Graph, ReadBack};
-use crate::renderer::Slot;
 use crate::shaders::{path as shaders, types};
+use crate::slot::{CausticPaths, PixelFilter, Slot};
 
 pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
 pub(super) const PAIR: vk::Format = vk::Format::R32G32_UINT;

@@ -4,14 +4,14 @@
 //! vertex from the second on is connected to the camera through its diffuse lobe, which is the slot `caustics` or `diffuse`; the
 //! balance heuristic shares every such path with the camera's (glsl/path/mis.glsl). Scenes without glossy surfaces do without.
 
-use super::SlotSums;
 use super::paths::{FLOATS, Paths, WORD, WORDS, Walk, camera_rays};
-use super::traced_scene::TracedScene;
-use super::tracer::View;
+use super::sums::SlotSums;
+use super::view::View;
+use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
-use crate::renderer::Slot;
 use crate::shaders::particle as shaders;
+use crate::slot::Slot;
 use crate::vulkan::VulkanError;
 
 /// Words of a sum: low and high of red, green and blue.

@@ -5,15 +5,18 @@
 //! sky is estimated from the same directions. Each kind of light has a kernel of its own, which adds to what the one before it found: kernels stay
 //! small, and a scene runs only those that it has lights for.
 
+mod options;
+
 use ash::vk;
 use glam::DVec3;
 
-use super::gbuffer::GBuffer;
+use crate::frame::gbuffer::GBuffer;
+use crate::frame::rays::{TracedBindings, TracedScene};
 use crate::graph::Graph;
 use crate::graph::bindings::{ImageRef, SampledImage};
-use crate::reference::traced_scene::{TracedBindings, TracedScene};
-use crate::renderer::TracedSettings;
 use crate::shaders::direct::{Directions, DirectionsPush, Emitters, EmittersPush, Punctual, PunctualPush};
+
+pub use self::options::TracedSettings;
 
 /// Declares the passes that the scene's lights need; returns the slot's radiance, or nothing if that is none. `origin`: of the
 /// G-buffer's render space.

@@ -4,65 +4,22 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DMat3, DVec3, Vec3};
+use glam::DVec3;
 
+use super::cutout::{Cutout, cutout};
 use super::emitters::{EmitterTable, emitter_table};
 use super::sobol::sobol_points;
 use super::texels::Texels;
+use super::triangles::{TracedTriangle, flatten};
 use crate::frame::light_set::{punctual_light, shining_lights};
-use crate::frame::octahedral::pack_direction;
 use crate::frame::scene_data::{material_record, texture_kinds};
 use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Alpha, Bounds, Facts, Material, Primitive, Scene, Texture};
+use crate::scene::{Bounds, Facts, Material, Scene};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
-
-/// No vertex normals (TRIANGLE_FLAT).
-const FLAT: u32 = 1 << 31;
-
-/// A triangle of the scene in render space, counter-clockwise as seen from its front.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TracedTriangle {
-    pub(super) corners: [Vec3; 3],
-    pub(super) material: u32,
-    /// Packed, at the corners; `None`: flat.
-    normals: Option<[u32; 3]>,
-}
-
-impl TracedTriangle {
-    fn edges(&self) -> [Vec3; 2] {
-        [self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]]
-    }
-
-    /// m²
-    pub(super) fn area(&self) -> f64 {
-        let [edge1, edge2] = self.edges().map(Vec3::as_dvec3);
-        0.5 * edge1.cross(edge2).length()
-    }
-
-    fn record(&self, light_density: f32) -> [[u32; 4]; 4] {
-        let [edge1, edge2] = self.edges();
-        let words = |vector: Vec3, last: u32| [vector.x.to_bits(), vector.y.to_bits(), vector.z.to_bits(), last];
-        let normals = self.normals.unwrap_or_default();
-        [
-            words(self.corners[0], self.material | if self.normals.is_none() { FLAT } else { 0 }),
-            words(edge1, normals[0]),
-            words(edge2, normals[1]),
-            [normals[2], light_density.to_bits(), 0, 0],
-        ]
-    }
-}
-
-/// Attributes of corners, three elements a triangle, or a single one if no primitive has the attribute.
-#[derive(Default)]
-struct Corners {
-    colors: Vec<[u8; 4]>,
-    texcoords: Vec<[f32; 4]>,
-    tangents: Vec<[f32; 4]>,
-}
 
 /// A scene on the device, ready for rays.
 pub(crate) struct TracedScene {
@@ -78,20 +35,20 @@ pub(crate) struct TracedScene {
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
     /// Some triangle is there at some of its points only.
-    pub(super) cutouts: bool,
+    pub(crate) cutouts: bool,
     pub(crate) emitter_count: u32,
     /// Some light ends at a range, so that paths from it are none.
-    pub(super) ranged_lights: bool,
+    pub(crate) ranged_lights: bool,
     /// Of all triangles, m².
-    pub(super) area: f64,
+    pub(crate) area: f64,
     pub(crate) punctual_count: u32,
     pub(crate) emissive_count: u32,
     /// From a triangle's density among all lights to that among emissive triangles.
     pub(crate) emissive_density_scale: f32,
     /// Whether lights may send out paths of their own.
-    pub(super) light_paths: bool,
+    pub(crate) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
-    pub(super) power: f64,
+    pub(crate) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
 }
 
@@ -206,7 +163,7 @@ impl TracedScene {
 
     /// Whether lights send out paths of their own: where something glossy may gather their light, and more than direct light is
     /// asked for. The sky alone does not: camera paths find it.
-    pub(super) fn needs_light_paths(&self, bounces: Option<u32>) -> bool {
+    pub(crate) fn needs_light_paths(&self, bounces: Option<u32>) -> bool {
         self.light_paths && bounces != Some(0)
     }
 
@@ -253,118 +210,4 @@ pub(crate) fn traced_key(scene: &Scene) -> u64 {
 pub(crate) fn surfaces_key(scene: &Scene) -> u64 {
     let revisions = scene.revisions();
     hash_of(&(scene.identity(), revisions.geometry, revisions.materials))
-}
-
-/// What its alpha leaves of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cutout {
-    Everything,
-    Nothing,
-    /// A texture or vertex colours decide.
-    PerPoint,
-}
-
-fn cutout(material: &Material, textures: &[Texture], facts: &Facts) -> Cutout {
-    let Alpha::Mask { cutoff } = material.alpha else { return Cutout::Everything };
-    let (mut least, mut most) = (material.base_color[3], material.base_color[3]);
-    if let Some(texture) = material.base_color_texture {
-        let alphas = || textures[texture.texture.0].rgba8.chunks_exact(4).map(|texel| f32::from(texel[3]) / 255.0);
-        least *= alphas().fold(1.0, f32::min);
-        most *= alphas().fold(0.0, f32::max);
-    }
-    if facts.vertex_colors {
-        least = 0.0;
-    }
-    match (least >= cutoff, most < cutoff) {
-        (true, _) => Cutout::Everything,
-        (_, true) => Cutout::Nothing,
-        _ => Cutout::PerPoint,
-    }
-}
-
-fn flatten(scene: &Scene, origin: DVec3, facts: &Facts) -> Result<(Vec<TracedTriangle>, Corners), VulkanError> {
-    let mut triangles = Vec::new();
-    let mut corners = Corners::default();
-    for instance in scene.instances() {
-        let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
-        let world = instance.world;
-        let positions: Vec<Vec3> = primitive
-            .positions
-            .iter()
-            .map(|&position| (world.transform_point3(DVec3::from(position.map(f64::from))) - origin).as_vec3())
-            .collect();
-        let normals = primitive.normals.as_ref().map(|normals| packed_normals(normals, world.matrix3));
-        let order = if instance.flips_winding { [0, 2, 1] } else { [0, 1, 2] };
-        let material = u32::try_from(primitive.material.0).unwrap_or(0);
-        triangles.extend(primitive.indices.chunks_exact(3).map(|indices| {
-            let vertices = order.map(|corner| indices[corner] as usize);
-            TracedTriangle {
-                corners: vertices.map(|vertex| positions[vertex]),
-                material,
-                normals: normals.as_ref().map(|normals| vertices.map(|vertex| normals[vertex])),
-            }
-        }));
-        corners.extend(primitive, order, world.matrix3, facts);
-    }
-    corners.complete();
-    if triangles.len() >= (u32::MAX / 12) as usize {
-        return Err(VulkanError::TooLarge {
-            what: "the scene".to_owned(),
-            asked: format!("{} triangles to trace rays against", triangles.len()),
-            limit: (u32::MAX / 12).to_string(),
-        });
-    }
-    Ok((triangles, corners))
-}
-
-/// Normals in render space: by the inverse transpose, which keeps them perpendicular, times any positive factor.
-fn packed_normals(normals: &[[f32; 3]], world: DMat3) -> Vec<u32> {
-    let [a, b, c] = [world.x_axis, world.y_axis, world.z_axis];
-    let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
-    let largest = cofactors.to_cols_array().into_iter().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
-    let side = if world.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let to_render = cofactors * (side / largest);
-    normals.iter().map(|normal| pack_direction((to_render * DVec3::from(normal.map(f64::from))).as_vec3())).collect()
-}
-
-impl Corners {
-    /// Adds the corners of an instance's triangles, each triangle's in `order`.
-    fn extend(&mut self, primitive: &Primitive, order: [usize; 3], world: DMat3, facts: &Facts) {
-        let vertices =
-            || primitive.indices.chunks_exact(3).flat_map(|indices| order.map(|corner| indices[corner] as usize));
-        if facts.vertex_colors {
-            let byte = |channel: f32| (channel.clamp(0.0, 1.0) * 255.0).round() as u8;
-            self.colors.extend(
-                vertices().map(|vertex| primitive.colors.as_ref().map_or([255; 4], |colors| colors[vertex].map(byte))),
-            );
-        }
-        if facts.textured {
-            let set = |set: usize, vertex: usize| primitive.texcoords[set].as_ref().map_or([0.0; 2], |uv| uv[vertex]);
-            self.texcoords.extend(vertices().map(|vertex| {
-                let [[u0, v0], [u1, v1]] = [set(0, vertex), set(1, vertex)];
-                [u0, v0, u1, v1]
-            }));
-        }
-        if facts.normal_mapped {
-            let side = if world.determinant() < 0.0 { -1.0 } else { 1.0 };
-            self.tangents.extend(vertices().map(|vertex| {
-                let Some(tangents) = &primitive.tangents else { return [0.0; 4] };
-                let [x, y, z, sign] = tangents[vertex].map(f64::from);
-                (world * DVec3::new(x, y, z)).normalize_or_zero().extend(sign * side).as_vec4().to_array()
-            }));
-        }
-    }
-
-    /// An attribute that no primitive has is a single element.
-    fn complete(&mut self) {
-        if self.colors.is_empty() {
-            self.colors.push([255; 4]);
-        }
-        if self.texcoords.is_empty() {
-            self.texcoords.push([0.0; 4]);
-        }
-        if self.tangents.is_empty() {
-            self.tangents.push([0.0; 4]);
-        }
-    }
 }

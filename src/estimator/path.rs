@@ -7,18 +7,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::camera_paths::{self, Sums, Wave};
+use super::cost::TraceCost;
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::paths::Paths;
-use super::traced_scene::TracedScene;
-use super::{CausticPaths, PixelFilter, ReferenceRequest, SampleSource, SlotSums};
-use crate::frame::camera::camera;
-use crate::graph::{Executed, Graph, GraphDescription, ReadBack, Store};
-use crate::renderer::{Context, Error, PassTiming, Slot, Timing};
+use super::sums::{SampleSource, SlotSums, scatter_sums, seed_of_half, seed_of_sample};
+use super::view::{EstimateRequest, View};
+use crate::frame::rays::TracedScene;
+use crate::graph::{Graph, GraphDescription, PassTiming, Store, Timing};
+use crate::method::Error;
 use crate::scene::Scene;
-use crate::shaders::types;
 use crate::vulkan::{Device, VulkanError};
 
 /// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
@@ -29,19 +27,6 @@ const DEPTHS_PER_SUBMISSION: u32 = 12;
 /// Why lights send out no paths ([`TracedScene::needs_light_paths`]).
 const NO_LIGHT_PATHS: &str = "no glossy surface, or no light but the sky's, or direct light alone";
 
-/// What a run of samples cost.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct TraceCost {
-    /// GPU time, milliseconds.
-    pub(crate) gpu_ms: f64,
-    /// Time spent creating pipelines, milliseconds.
-    pub(crate) pipeline_ms: f64,
-    /// Rays cast: from the camera, between vertices, to lights.
-    pub(crate) rays: u64,
-    /// The passes, those of the same name together.
-    pub(crate) passes: Vec<PassTiming>,
-}
-
 /// Traces paths through one scene.
 pub(crate) struct PathTracer {
     store: Store,
@@ -50,36 +35,6 @@ pub(crate) struct PathTracer {
     cost: TraceCost,
     /// The most that each piece held between submissions, bytes.
     held: BTreeMap<String, u64>,
-}
-
-/// The picture that is traced.
-#[derive(Clone, Debug)]
-pub(crate) struct View {
-    pub(crate) size: [u32; 2],
-    pub(crate) camera: types::Camera,
-    pub(crate) bounces: Option<u32>,
-    pub(crate) caustics: CausticPaths,
-    pub(crate) filter: PixelFilter,
-    pub(crate) seed: u32,
-}
-
-impl View {
-    /// The picture that a request asks for of a scene with this origin of render space.
-    pub(super) fn new(request: &ReferenceRequest, origin: DVec3) -> View {
-        View {
-            size: request.size,
-            camera: camera(&request.camera, request.size, origin),
-            bounces: request.bounces,
-            caustics: request.caustics,
-            filter: request.filter,
-            seed: request.seed,
-        }
-    }
-
-    /// Pixels, and light paths a sample.
-    pub(super) fn pixel_count(&self) -> f32 {
-        self.size[0] as f32 * self.size[1] as f32
-    }
 }
 
 impl PathTracer {
@@ -112,7 +67,7 @@ impl PathTracer {
     }
 
     /// The picture that a request asks for of the scene.
-    pub(crate) fn view(&self, request: &ReferenceRequest) -> View {
+    pub(crate) fn view(&self, request: &EstimateRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
         View::new(request, origin)
     }
@@ -339,84 +294,8 @@ fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
     (depth + DEPTHS_PER_SUBMISSION).min(all)
 }
 
-pub(super) fn seed_of_half(seed: u32, half: u32) -> u32 {
-    seed.wrapping_mul(2).wrapping_add(half)
-}
-
-/// A seed for each sample of a half, different from those of the pixels' sequences.
-pub(super) fn seed_of_sample(seed: u32, sample: u32) -> u32 {
-    let mixed = (u64::from(seed) << 32 | u64::from(sample)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    ((mixed ^ mixed >> 29) >> 32) as u32 ^ sample.rotate_left(16)
-}
-
-impl TraceCost {
-    /// Notes a piece that the scene does not need.
-    fn skip(&mut self, piece: &str, pass: &str, reason: &str) {
-        if self.passes.iter().all(|row| row.piece != piece) {
-            let (piece, pass, skipped) = (piece.to_owned(), pass.to_owned(), Some(reason.to_owned()));
-            self.passes.push(PassTiming { piece, pass, ms: None, skipped, work: BTreeMap::new() });
-        }
-    }
-
-    /// Adds a submission that advanced a wave. Returns how many of its paths go on.
-    fn add_step(&mut self, mut executed: Executed, totals: ReadBack) -> u32 {
-        let totals: Vec<u32> = bytemuck::pod_collect_to_vec(&executed.take(totals));
-        self.rays += u64::from(totals[0]);
-        self.add(executed);
-        totals[1]
-    }
-
-    fn add(&mut self, executed: Executed) {
-        self.gpu_ms += executed.gpu_ms;
-        self.pipeline_ms += executed.pipeline_ms;
-        for pass in &executed.passes {
-            let same = |known: &&mut PassTiming| known.piece == pass.piece && known.pass == pass.pass;
-            match self.passes.iter_mut().find(same) {
-                Some(known) => {
-                    known.ms = match (known.ms, pass.ms) {
-                        (Some(a), Some(b)) => Some(a + b),
-                        (a, b) => a.or(b),
-                    };
-                    for (name, count) in &pass.work {
-                        *known.work.entry(name.clone()).or_insert(0) += count;
-                    }
-                    if pass.skipped.is_none() {
-                        known.skipped = None;
-                    }
-                }
-                None => self.passes.push(pass.clone()),
-            }
-        }
-    }
-}
-
-/// Puts the sums of a run of blocks where their pixels are (glsl/path/pixels.glsl).
-pub(super) fn scatter_sums(
-    sums: &mut SlotSums,
-    texels: &[[f32; 4]],
-    size: [u32; 2],
-    [first_block, block_count]: [u32; 2],
-) {
-    let [width, height] = size;
-    let blocks_per_row = width.div_ceil(8);
-    let paths = 64 * block_count;
-    for place in 0..paths {
-        let block = first_block + place / 64;
-        let (lane, part) = (place & 7, place >> 3 & 7);
-        let x = block % blocks_per_row * 8 + (part & 1) * 4 + (lane & 3);
-        let y = block / blocks_per_row * 8 + (part >> 1) * 2 + (lane >> 2);
-        if x < width && y < height {
-            let pixel = y as usize * width as usize + x as usize;
-            for slot in 0..Slot::ALL.len() {
-                let [red, green, blue, _] = texels[slot * paths as usize + place as usize];
-                sums.slots[slot][pixel] = [red, green, blue];
-            }
-        }
-    }
-}
-
 /// A request's samples by the path tracer.
-pub(super) struct PathSource {
+pub(crate) struct PathSource {
     tracer: PathTracer,
     view: View,
 }
@@ -424,9 +303,9 @@ pub(super) struct PathSource {
 impl PathSource {
     /// # Errors
     /// A scene that does not fit the device.
-    pub(super) fn new(context: &Context, scene: &Scene, request: &ReferenceRequest) -> Result<PathSource, Error> {
-        let mut tracer = PathTracer::new(context.shared_device())?;
-        tracer.set_scene(Arc::new(TracedScene::new(context.shared_device(), scene)?));
+    pub(crate) fn new(device: &Arc<Device>, scene: &Scene, request: &EstimateRequest) -> Result<PathSource, Error> {
+        let mut tracer = PathTracer::new(device)?;
+        tracer.set_scene(Arc::new(TracedScene::new(device, scene)?));
         let view = tracer.view(request);
         Ok(PathSource { tracer, view })
     }

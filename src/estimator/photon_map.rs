@@ -4,8 +4,8 @@
 //! no matter.
 
 use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS};
-use super::traced_scene::TracedScene;
-use super::tracer::View;
+use super::view::View;
+use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
 use crate::shaders::sppm as shaders;

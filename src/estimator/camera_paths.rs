@@ -6,14 +6,13 @@
 //!
 //! found by running into the light (surface) and by choosing a point of it (light, connect), weighted by the balance heuristic.
 
-use super::PixelFilter;
 use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS, Walk};
-use super::traced_scene::TracedScene;
-use super::tracer::View;
+use super::view::View;
+use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
-use crate::renderer::Slot;
 use crate::shaders::{path as shaders, types};
+use crate::slot::{PixelFilter, Slot};
 
 /// Some samples of some pixels.
 #[derive(Clone, Copy, Debug)]

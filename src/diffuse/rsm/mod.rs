@@ -9,6 +9,8 @@
 //! constant (glsl/lib/vpl.glsl). Light that is blocked on its way from y to x is counted all the same: that is the
 //! method's error, besides everything beyond one bounce.
 
+mod options;
+
 use ash::vk;
 
 use crate::frame::gbuffer::GBuffer;
@@ -16,8 +18,9 @@ use crate::frame::light_set::LightSet;
 use crate::frame::light_views::{LightViews, ReflectiveViews};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{Dependence, Graph};
-use crate::renderer::RsmSettings;
 use crate::shaders::rsm::{Gather, GatherPush, Scan, ScanPush, TileFlux, TileFluxPush, Vpls, VplsPush};
+
+pub use self::options::RsmSettings;
 
 /// Most work groups of the tile pass; each then takes several tiles.
 const MOST_TILE_GROUPS: u32 = 32768;

@@ -1,13 +1,16 @@
 //! The `direct` slot by filtered shadow maps.
 
+mod options;
+
 use ash::vk;
 
-use super::gbuffer::GBuffer;
-use super::light_views::LightViews;
+use crate::frame::gbuffer::GBuffer;
+use crate::frame::light_views::LightViews;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
-use crate::renderer::ShadowSettings;
 use crate::shaders::direct::{ShadowMap, ShadowMapPush};
+
+pub use self::options::ShadowSettings;
 
 /// Declares the pass; returns the slot's radiance.
 pub(crate) fn shadow_map(

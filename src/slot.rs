@@ -1,4 +1,5 @@
-//! Slots: the parts of the light at the first visible surface. They add up to the image.
+//! Slots: the parts of the light at the first visible surface. They add up to the image. And which light an image shows: its paths, and where in
+//! a pixel it is sampled.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,4 +45,29 @@ impl std::fmt::Display for Slot {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
     }
+}
+
+/// The name of the sum of all slots where parts of a picture go by name.
+pub const IMAGE: &str = "image";
+
+/// Where in a pixel light is sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PixelFilter {
+    /// At its centre, as rasterisation does.
+    #[default]
+    Center,
+    /// Evenly all over it.
+    Box,
+}
+
+/// Which light the slot `caustics` shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CausticPaths {
+    /// All that reaches a diffuse lobe from a specular vertex, L (D|S)* S D E: the slot's definition.
+    #[default]
+    All,
+    /// Only what met nothing but specular lobes on its way from the light, L S⁺ D E: what photons from specular surfaces can find.
+    Specular,
 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use super::traced_scene::TracedTriangle;
+use super::triangles::TracedTriangle;
 use crate::scene::{LightKind, Material, PlacedLight};
 
 const TRIANGLE: u32 = 1 << 31;

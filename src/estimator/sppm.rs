@@ -24,13 +24,15 @@ use super::camera_paths::{self, Sums, Wave};
 use super::light_paths::{self, Swarm, scale_of};
 use super::paths::{Paths, Walk};
 use super::photon_map::{Disc, PhotonMap};
-use super::traced_scene::TracedScene;
-use super::tracer::{View, scatter_sums, seed_of_half, seed_of_sample};
-use super::{ReferenceRequest, SampleSource, SlotSums};
-use crate::graph::{Executed, Graph, ReadBack, Store};
-use crate::renderer::{Context, Error, Timing};
+use std::sync::Arc;
+
+use super::sums::{SampleSource, SlotSums, scatter_sums, seed_of_half, seed_of_sample};
+use super::view::{EstimateRequest, View};
+use crate::frame::rays::TracedScene;
+use crate::graph::{Executed, Graph, ReadBack, Store, Timing};
+use crate::method::Error;
 use crate::scene::Scene;
-use crate::vulkan::VulkanError;
+use crate::vulkan::{Device, VulkanError};
 
 /// The share of the photons that a pass keeps.
 const ALPHA: f64 = 2.0 / 3.0;
@@ -70,8 +72,7 @@ struct Pass {
 impl SppmSource {
     /// # Errors
     /// A scene that does not fit the device.
-    pub(crate) fn new(context: &Context, scene: &Scene, request: &ReferenceRequest) -> Result<SppmSource, Error> {
-        let device = context.shared_device();
+    pub(crate) fn new(device: &Arc<Device>, scene: &Scene, request: &EstimateRequest) -> Result<SppmSource, Error> {
         let scene = TracedScene::new(device, scene)?;
         let view = View::new(request, scene.origin);
         let [width, height] = request.size;

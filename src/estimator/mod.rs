@@ -1,0 +1,21 @@
+//! Estimators: unbiased or consistent sums of samples that fill several slots in one run.
+//!
+//! `path` traces paths from the camera and from lights, `sppm` photons; both walk them by the passes of `paths`.
+
+mod camera_paths;
+mod cost;
+mod light_paths;
+mod noise;
+mod options;
+pub(crate) mod path;
+mod paths;
+mod photon_map;
+pub(crate) mod sppm;
+mod sums;
+mod view;
+
+pub(crate) use self::cost::TraceCost;
+pub use self::noise::Noise;
+pub use self::options::PathSettings;
+pub use self::sums::{SampleSource, SlotSums};
+pub(crate) use self::view::EstimateRequest;

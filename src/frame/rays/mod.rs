@@ -1,0 +1,10 @@
+//! The scene as rays meet it, for whatever sends rays: methods, estimators.
+
+mod cutout;
+mod emitters;
+mod sobol;
+mod texels;
+mod traced_scene;
+mod triangles;
+
+pub(crate) use self::traced_scene::{TracedBindings, TracedScene, surfaces_key, traced_key};

@@ -1,0 +1,63 @@
+//! What a reference is asked to show, and who adds up its samples.
+
+use serde::{Deserialize, Serialize};
+
+use crate::estimator::path::PathSource;
+use crate::estimator::sppm::SppmSource;
+use crate::estimator::{EstimateRequest, SampleSource};
+use crate::method::Error;
+use crate::renderer::Context;
+use crate::scene::{CameraView, Scene};
+use crate::slot::{CausticPaths, PixelFilter};
+
+/// How light transport is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// Path tracing with next-event estimation, and light tracing for what it finds badly.
+    Path,
+    /// Stochastic progressive photon mapping, for caustics that are seen in mirrors or through glass.
+    Sppm,
+}
+
+/// What a reference shows; the samples to come do not change it, they only lessen its noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceRequest {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Where the picture is taken from.
+    pub camera: CameraView,
+    /// How light transport is estimated.
+    pub estimator: Estimator,
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone; `None`: no limit.
+    pub bounces: Option<u32>,
+    /// Which light the slot `caustics` shows.
+    pub caustics: CausticPaths,
+    /// Where in a pixel light is sampled.
+    pub filter: PixelFilter,
+    /// Which of the equally good sequences of samples is taken.
+    pub seed: u32,
+}
+
+/// Sets the seeds of references apart from those of techniques: a technique that takes some of the very samples that it is
+/// compared with would look better than it is.
+const SEEDS_OF_REFERENCES: u32 = 0x2545_F491;
+
+/// Who adds up the samples of what `request` asks of `scene`.
+///
+/// # Errors
+/// An estimator that there is not; a scene that does not fit the device.
+pub(super) fn source<'a>(
+    context: &'a Context,
+    scene: &'a Scene,
+    request: &'a ReferenceRequest,
+) -> Result<Box<dyn SampleSource + 'a>, Error> {
+    let ReferenceRequest { size, camera, estimator, bounces, caustics, filter, seed } = request.clone();
+    let device = context.shared_device();
+    let request = EstimateRequest { size, camera, bounces, caustics, filter, seed: seed ^ SEEDS_OF_REFERENCES };
+    match estimator {
+        Estimator::Path => Ok(Box::new(PathSource::new(device, scene, &request)?)),
+        Estimator::Sppm if caustics != CausticPaths::All => Err(Error::SppmCaustics),
+        Estimator::Sppm => Ok(Box::new(SppmSource::new(device, scene, &request)?)),
+    }
+}
