@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use super::rays::{NO_TRIANGLE, Random, Ray, ray, trace_in};
 use super::session::Session;
-use crate::caustics::photons::lists::{ListInputs, build, build_from};
+use crate::caustics::photons::lists::{build, build_from};
 use crate::caustics::photons::records::PhotonRays;
+use crate::caustics::photons::scene_lists::ListInputs;
 use crate::caustics::photons::{lines, march};
 use crate::frame::camera::camera;
 use crate::frame::geometry::Geometry;

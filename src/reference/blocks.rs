@@ -22,6 +22,9 @@ pub(crate) const SAMPLES_PER_CHUNK: u32 = 2 * CHUNK_SAMPLES;
 /// The largest level, so that no index of a chunk overflows.
 pub(crate) const MAX_LEVEL: u32 = 26;
 
+/// The most samples per pixel of a reference.
+pub const MAX_SPP: u32 = SAMPLES_PER_CHUNK << MAX_LEVEL;
+
 /// The two halves.
 pub(crate) const HALVES: [usize; 2] = [0, 1];
 

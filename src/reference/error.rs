@@ -63,7 +63,7 @@ pub enum ReferenceError {
         portion: u32,
     },
     /// More samples than can be counted.
-    #[error("{0} samples per pixel are more than the {max} that a reference can have", max = super::MAX_SPP)]
+    #[error("{0} samples per pixel are more than the {max} that a reference can have", max = super::blocks::MAX_SPP)]
     TooManySamples(u32),
     /// The cache has no such reference.
     #[error("the cache has no reference whose key begins with {0:?}; irradia reference --list shows what there is")]

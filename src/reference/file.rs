@@ -43,7 +43,7 @@ impl ReferenceFile {
 
     /// The images that the samples come to, with their noise.
     pub fn reference(&self) -> Reference {
-        Reference::of(self)
+        Reference::of(&self.about, &self.spent, &self.state)
     }
 
     /// Writes the file, whole or not at all.

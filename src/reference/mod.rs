@@ -16,6 +16,7 @@ mod cache;
 mod error;
 mod file;
 mod key;
+mod merge;
 mod obtain;
 mod request;
 mod result;
@@ -23,14 +24,15 @@ mod shard;
 #[cfg(test)]
 mod tests;
 
-pub use self::blocks::CHUNK_SAMPLES;
+pub use self::blocks::{CHUNK_SAMPLES, MAX_SPP};
 pub use self::cache::{Cache, Entry, EntryContent};
 pub use self::error::ReferenceError;
 pub use self::file::ReferenceFile;
 pub use self::key::{REFERENCE_VERSION, ReferenceKey, caustics_name, estimator_name, filter_name};
-pub use self::obtain::{Goal, Job, MAX_SPP, Progress, obtain};
+pub use self::merge::merge;
+pub use self::obtain::{Goal, Job, Progress, obtain};
 pub use self::request::{Estimator, ReferenceRequest};
 pub use self::result::Reference;
-pub use self::shard::{Shard, merge};
+pub use self::shard::Shard;
 pub use crate::estimator::{Noise, SampleSource, SlotSums};
 pub use crate::slot::{CausticPaths, IMAGE, PixelFilter};

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::about::{About, Spent};
-use super::blocks::{Block, CHUNK_SAMPLES, MAX_LEVEL, SAMPLES_PER_CHUNK};
+use super::blocks::{Block, CHUNK_SAMPLES, MAX_SPP, SAMPLES_PER_CHUNK};
 use super::request::source;
 use super::shard::chunks_of;
 use super::{Cache, Reference, ReferenceError, ReferenceFile, ReferenceRequest, SampleSource, Shard};
@@ -13,9 +13,6 @@ use crate::method::Error;
 use crate::output::OutputError;
 use crate::renderer::Context;
 use crate::scene::Scene;
-
-/// The most samples per pixel of a reference.
-pub const MAX_SPP: u32 = SAMPLES_PER_CHUNK << MAX_LEVEL;
 
 /// How long samples may be in memory alone.
 const SAVE_INTERVAL: Duration = Duration::from_secs(120);

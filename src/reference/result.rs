@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{Noise, ReferenceFile, ReferenceKey};
+use super::about::{About, Spent};
+use super::blocks::State;
+use super::key::ReferenceKey;
+use crate::estimator::Noise;
 use crate::image::ColorImage;
 use crate::slot::{IMAGE, Slot};
 
@@ -32,25 +35,25 @@ pub struct Reference {
 }
 
 impl Reference {
-    pub(crate) fn of(file: &ReferenceFile) -> Reference {
-        let size = file.about.size;
-        let means = file.state.means();
+    pub(crate) fn of(about: &About, spent: &Spent, state: &State) -> Reference {
+        let size = about.size;
+        let means = state.means();
         let image = ColorImage { size, pixels: means.image };
         let images = |all: Vec<Vec<[f32; 3]>>| {
             Slot::ALL.into_iter().zip(all).map(|(slot, pixels)| (slot, ColorImage { size, pixels })).collect()
         };
-        let samples = f64::from(file.spp()) * f64::from(size[0]) * f64::from(size[1]);
+        let samples = f64::from(state.samples()) * f64::from(size[0]) * f64::from(size[1]);
         let mut reference = Reference {
-            key: file.about.key.clone(),
-            spp: file.spp(),
+            key: about.key.clone(),
+            spp: state.samples(),
             slots: images(means.slots),
             image,
             half_differences: images(means.noise),
             noise: BTreeMap::new(),
-            seconds: file.spent.seconds,
-            samples_per_second: file.spent.rate(samples),
-            rays_per_second: file.spent.rate(file.spent.rays as f64),
-            devices: file.spent.devices.clone(),
+            seconds: spent.seconds,
+            samples_per_second: spent.rate(samples),
+            rays_per_second: spent.rate(spent.rays as f64),
+            devices: spent.devices.clone(),
         };
         let mut noise: BTreeMap<String, Noise> =
             Slot::ALL.into_iter().map(|slot| (slot.name().to_owned(), reference.noise_of(&[slot]))).collect();

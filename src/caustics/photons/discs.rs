@@ -4,7 +4,7 @@
 use ash::vk;
 
 use super::records::{DRAW_WORD, STAGE_WORDS};
-use super::splat::{RECORDS, Splat, TileList};
+use super::splat_tiles::{RECORDS, Splat, TileList};
 use crate::graph::Graph;
 use crate::shaders::photon_splat::{Discs, DiscsPush};
 use crate::vulkan::RasterState;

@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use super::PhotonInputs;
 use super::choose::{CHOICE_EMIT, Choice};
+use super::inputs::PhotonInputs;
 use super::options::PhotonFootprint;
 use super::records::{PhotonRays, STAGE_WORDS};
 use super::views::SpecularViews;

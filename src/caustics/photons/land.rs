@@ -2,10 +2,10 @@
 
 use ash::vk;
 
-use super::PhotonInputs;
 use super::bvh::shift;
 use super::choose::Choice;
 use super::emit::Arrivals;
+use super::inputs::PhotonInputs;
 use super::options::PhotonFootprint;
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
 use crate::frame::rays::{TracedBindings, TracedScene};

@@ -4,7 +4,7 @@
 use ash::vk;
 
 use super::list_views::ListView;
-use super::lists::{ListInputs, SceneLists, draw_views, is_solid};
+use super::scene_lists::{ListInputs, SceneLists, draw_views, is_solid};
 use crate::frame::geometry::{Attributes, DrawView, draw_list};
 use crate::frame::scene_data::DrawnInstance;
 use crate::graph::bindings::ImageRef;

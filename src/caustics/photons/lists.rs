@@ -4,19 +4,16 @@
 //! Nobody knows the number of nodes before the lists are drawn. The pool starts with some for every texel; what does not fit is counted all the
 //! same, and the frame is made again with a pool that holds it ([`Graph::grows`]). Layers have a node for every texel, a number known beforehand.
 
-use ash::vk;
-
 use super::layers;
 use super::list_views::{ListView, list_views};
-use super::options::{ListProjection, PhotonGeometry, PhotonSettings};
-use crate::frame::geometry::{Attributes, DrawView, Geometry, draw_list};
-use crate::frame::scene_data::{DrawnInstance, SceneData};
-use crate::graph::bindings::{BufferRef, TexelBuffer};
+use super::options::{ListProjection, PhotonGeometry};
+use super::scene_lists::{Blocks, ListInputs, MOST_LEVELS, SceneLists, draw_views, is_solid};
+use crate::frame::geometry::{Attributes, draw_list};
+use crate::frame::scene_data::DrawnInstance;
 use crate::graph::{Dependence, Graph};
 use crate::shaders::photon_lists::{
     Append, AppendMasked, AppendMaskedPush, AppendPush, Coarser, CoarserPush, Occupancy, OccupancyPush,
 };
-use crate::shaders::types;
 use crate::vulkan::RasterState;
 
 /// The pool's first size, nodes for each texel of each view.
@@ -25,53 +22,6 @@ const NODES_PER_TEXEL: u32 = 4;
 const LEVEL_BITS: u32 = 2;
 /// The coarsest level has so many blocks to a side at least.
 const COARSEST: u32 = 4;
-const MOST_LEVELS: usize = 4;
-
-/// What the lists are made of.
-pub(crate) struct ListInputs<'a> {
-    pub(crate) data: &'a SceneData,
-    pub(crate) geometry: &'a Geometry,
-    /// For the projection `camera`.
-    pub(crate) camera: Option<&'a types::Camera>,
-    pub(crate) settings: &'a PhotonSettings,
-}
-
-/// The scene's lists.
-#[derive(Clone, Copy)]
-pub(crate) struct SceneLists {
-    pub(crate) resolution: u32,
-    pub(crate) view_count: u32,
-    pub(crate) views: BufferRef<[f32; 4]>,
-    /// Four words for each texel of each view (glsl/photon_lists/node.glsl).
-    pub(crate) pixels: BufferRef<u32>,
-    pub(crate) nodes: BufferRef<[u32; 4]>,
-    /// How many nodes there are, or would be if the pool held them.
-    pub(crate) node_count: BufferRef<u32>,
-    pub(crate) blocks: Blocks,
-}
-
-/// Occupied depths of blocks of texels, level by level.
-#[derive(Clone, Copy)]
-pub(crate) struct Blocks {
-    pub(crate) slices: BufferRef<[u32; 4]>,
-    pub(crate) top: u32,
-    /// The first block of each level, from level 1.
-    pub(crate) first_of_level: [u32; MOST_LEVELS],
-}
-
-impl SceneLists {
-    pub(super) fn view_texels(&self) -> TexelBuffer {
-        self.views.texels(vk::Format::R32G32B32A32_SFLOAT)
-    }
-
-    pub(super) fn pixel_texels(&self) -> TexelBuffer {
-        self.pixels.texels(vk::Format::R32G32B32A32_UINT)
-    }
-
-    pub(super) fn node_texels(&self) -> TexelBuffer {
-        self.nodes.texels(vk::Format::R32G32B32A32_UINT)
-    }
-}
 
 /// Declares the passes that make the lists.
 pub(crate) fn build(graph: &mut Graph<'_>, inputs: &ListInputs<'_>) -> SceneLists {
@@ -122,11 +72,6 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: u
     }
     occupy(graph, &lists);
     lists
-}
-
-/// Which instances a pass for opaque surfaces draws; the others are cut out by a texture's alpha.
-pub(super) fn is_solid(drawn: &DrawnInstance) -> bool {
-    !(drawn.masked && drawn.textured)
 }
 
 /// The coarsest level, where each level's blocks start, and how many there are.
@@ -190,10 +135,6 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
     let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
     let pass = graph.raster("caustics/photons/lists-masked", masked, state(Attributes::DepthMasked));
     pass.count("nodes", lists.node_count, 0).area(area).draw(list);
-}
-
-pub(super) fn draw_views(views: &[ListView], resolution: u32, push: impl Fn(u32) -> Vec<u8>) -> Vec<DrawView> {
-    (0..).zip(views).map(|(index, view)| view.draw_view(index, resolution, push(index))).collect()
 }
 
 /// Which depths are occupied, for the march.

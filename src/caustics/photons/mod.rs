@@ -9,6 +9,7 @@ mod choose;
 mod discs;
 mod emit;
 mod grid;
+mod inputs;
 mod land;
 mod layers;
 pub(crate) mod lines;
@@ -17,26 +18,21 @@ pub(crate) mod lists;
 pub(crate) mod march;
 mod options;
 pub(crate) mod records;
+pub(crate) mod scene_lists;
 pub(crate) mod splat;
+mod splat_tiles;
 pub(crate) mod sums;
 mod tiles;
 mod upsample;
 mod views;
 
-use crate::frame::gbuffer::GBuffer;
-use crate::frame::geometry::Geometry;
-use crate::frame::light_set::LightSet;
-use crate::frame::light_views::LightViews;
-use crate::frame::rays::TracedScene;
-use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::scene::Facts;
-use crate::shaders::types;
 use emit::Arrivals;
 use records::{LandedPhotons, PhotonRays};
 use splat::{SplatInputs, splat};
 
+pub(crate) use self::inputs::PhotonInputs;
 pub use self::options::{
     ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
 };
@@ -46,20 +42,6 @@ const LARGEST_BUFFER: u32 = 1 << 27;
 /// The largest record of a photon at a specular surface (glsl/photons/beam.glsl), and where it lands (glsl/photon_splat/disc.glsl).
 const ARRIVAL_BYTES: u32 = 80;
 const DISC_BYTES: u32 = 48;
-
-/// What the method takes.
-pub(crate) struct PhotonInputs<'a> {
-    pub(crate) buffer: &'a GBuffer,
-    pub(crate) data: &'a SceneData,
-    pub(crate) geometry: &'a Geometry,
-    pub(crate) facts: &'a Facts,
-    pub(crate) camera: &'a types::Camera,
-    pub(crate) set: &'a LightSet,
-    pub(crate) lights: &'a LightViews,
-    /// Present where photons are traced through the hierarchy.
-    pub(crate) traced: Option<&'a TracedScene>,
-    pub(crate) settings: &'a PhotonSettings,
-}
 
 /// Declares the method's passes in the order in which they run; returns the slot.
 pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
@@ -111,7 +93,12 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
     let lists = (!by_triangles).then(|| {
         lists::build(
             graph,
-            &lists::ListInputs { data: inputs.data, geometry: inputs.geometry, camera: Some(inputs.camera), settings },
+            &scene_lists::ListInputs {
+                data: inputs.data,
+                geometry: inputs.geometry,
+                camera: Some(inputs.camera),
+                settings,
+            },
         )
     });
     let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.import(graph)));

@@ -20,47 +20,16 @@ use ash::vk;
 use super::discs::discs;
 use super::grid::Grid;
 use super::options::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
-use super::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
+use super::records::LandedPhotons;
+use super::splat_tiles::{PART_PHOTONS, STATE_WORDS, Splat};
 use super::tiles::tiles;
 use super::upsample::upsample;
 use crate::frame::gbuffer::GBuffer;
-use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
+use crate::graph::bindings::ImageRef;
 use crate::graph::{ClearColor, Graph};
-use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
-
-/// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
-const STATE_WORDS: usize = 18;
-pub(super) const ROWS_WORD: usize = 0;
-const BLOCKS_WORD: usize = 3;
-pub(super) const PARTS_WORD: usize = 14;
-
-/// A list of tiles that photons may reach, by where its four words are.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum TileList {
-    Ordinary = 6,
-    Crowded = 10,
-}
-
-impl TileList {
-    pub(super) fn word(self) -> usize {
-        self as usize
-    }
-
-    /// The name of a pass over the list.
-    pub(super) fn pass_name(self, pass: &str) -> String {
-        let suffix = if self == TileList::Crowded { "-crowded" } else { "" };
-        format!("caustics/photons/{pass}{suffix}")
-    }
-}
 
 /// What a photon may be off its surface, over the scene's length: its hit may come from lists of limited resolution.
 const TOLERANCE: f64 = 1e-3;
-
-/// Photons that a group of `tiles` takes at most: a driver may end loops after 65535 rounds, of which a photon takes up to 1⅛.
-const PART_PHOTONS: u32 = 32768;
-
-pub(super) const WORDS: vk::Format = vk::Format::R32_UINT;
-pub(super) const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 
 /// What splatting takes.
 pub(crate) struct SplatInputs<'a> {
@@ -70,34 +39,6 @@ pub(crate) struct SplatInputs<'a> {
     pub(crate) length: f64,
     /// Tiles whose sums are kept at a time, [`super::sums::TILES_AT_ONCE`].
     pub(crate) tiles_at_once: usize,
-}
-
-/// What the passes share.
-pub(super) struct Splat<'a> {
-    pub(super) buffer: &'a GBuffer,
-    pub(super) landed: LandedPhotons,
-    pub(super) gaussian: u32,
-    pub(super) elliptic: u32,
-    pub(super) tolerance: f32,
-    pub(super) image_size: [i32; 2],
-    pub(super) downscale: i32,
-    pub(super) grid: Grid,
-    /// Three texels a photon (glsl/photon_splat/disc.glsl).
-    pub(super) discs: BufferRef<[u32; 4]>,
-    /// A photon's cell, and its place there.
-    pub(super) places: BufferRef<[u32; 2]>,
-    pub(super) cell_counts: BufferRef<u32>,
-    cell_peaks: BufferRef<u32>,
-    tile_list: BufferRef<u32>,
-    crowded: BufferRef<u32>,
-    tile_peaks: BufferRef<u32>,
-    pub(super) state: BufferRef<u32>,
-    /// Whether a tile may have more photons than a group takes.
-    pub(super) may_crowd: bool,
-    /// Tiles whose sums are kept at a time.
-    pub(super) tiles_at_once: usize,
-    /// What the samples' results are written to: the slot, or irradiance.
-    pub(super) result: ImageRef,
 }
 
 /// Declares the passes; returns the slot.
@@ -145,87 +86,4 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         upsample(graph, &shared, slot);
     }
     slot
-}
-
-impl Splat<'_> {
-    /// What both ways start with: `start`, `project`, `touch`.
-    fn declare_start(&self, graph: &mut Graph<'_>) {
-        graph.fill_buffer("caustics/photons/clear-counts", self.cell_counts, 0);
-        graph.fill_buffer("caustics/photons/clear-peaks", self.cell_peaks, 0);
-        let (grid, stage) = (&self.grid, self.landed.stage as u32);
-        let blocks = grid.tiles().map(|tiles| tiles.div_ceil(8));
-        let pass = Start {
-            counts: self.landed.counts.texels(WORDS),
-            state: self.state.write(),
-            push: StartPush { stage, row_count: grid.row_count, blocks },
-        };
-        graph.pass("caustics/photons/splat-start", pass).groups([1, 1, 1]);
-
-        let pass = Project {
-            camera: self.buffer.camera.clone(),
-            photons: self.landed.photons.texels(RECORDS),
-            ellipses: self.landed.ellipses.texels(vk::Format::R32G32B32A32_SFLOAT),
-            counts: self.landed.counts.texels(WORDS),
-            levels: grid.levels.texels(RECORDS),
-            discs: self.discs.write(),
-            places: self.places.write(),
-            cell_counts: self.cell_counts.read_write(),
-            cell_peaks: self.cell_peaks.read_write(),
-            state: self.state.read_write(),
-            gaussian: self.gaussian,
-            elliptic: self.elliptic,
-            push: ProjectPush {
-                image_size: self.image_size,
-                stage,
-                downscale: self.downscale,
-                level_count: grid.level_count,
-                tolerance: self.tolerance,
-            },
-        };
-        let first = STAGE_WORDS * self.landed.stage;
-        graph
-            .pass("caustics/photons/project", pass)
-            .count("photons", self.landed.counts, first + COUNT_WORD)
-            .threads_indirect(self.landed.counts, first + DISPATCH_WORD);
-
-        let pass = Touch {
-            levels: grid.levels.texels(RECORDS),
-            cell_peaks: self.cell_peaks.texels(WORDS),
-            cell_counts: self.cell_counts.texels(WORDS),
-            tile_peaks: self.tile_peaks.write(),
-            tiles: self.tile_list.write(),
-            crowded: self.crowded.write(),
-            state: self.state.read_write(),
-            push: TouchPush {
-                tile_count: grid.tiles().map(u32::cast_signed),
-                level_count: grid.level_count,
-                ordinary: if self.may_crowd { PART_PHOTONS } else { u32::MAX },
-            },
-        };
-        graph
-            .pass("caustics/photons/touch", pass)
-            .count("tiles", self.state, TileList::Ordinary.word() + 3)
-            .count("crowded tiles", self.state, TileList::Crowded.word() + 3)
-            .threads_indirect(self.state, BLOCKS_WORD);
-    }
-
-    pub(super) fn state_texels(&self) -> TexelBuffer {
-        self.state.texels(WORDS)
-    }
-
-    /// The lists of tiles that the chosen way makes.
-    pub(super) fn lists(&self) -> &'static [TileList] {
-        if self.may_crowd { &[TileList::Ordinary, TileList::Crowded] } else { &[TileList::Ordinary] }
-    }
-
-    pub(super) fn tile_texels(&self, list: TileList) -> TexelBuffer {
-        match list {
-            TileList::Ordinary => self.tile_list.texels(WORDS),
-            TileList::Crowded => self.crowded.texels(WORDS),
-        }
-    }
-
-    pub(super) fn tile_peak_texels(&self) -> TexelBuffer {
-        self.tile_peaks.texels(WORDS)
-    }
 }

@@ -1,7 +1,7 @@
 //! Sums of samples that many invocations add to, in a buffer: of discs, and of crowded tiles. A tile's take 8 KiB, more than a device has for all
 //! tiles of a large frame: its tiles are done in ranges, one after the other in the same memory.
 
-use super::splat::{RECORDS, Splat, TileList};
+use super::splat_tiles::{RECORDS, Splat, TileList};
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::photon_splat::{Clear, ClearPush, Resolve, ResolvePush};

@@ -1,6 +1,6 @@
 //! From irradiance at every second or fourth pixel to the slot (Quyen 2014, section 3.3.2.4).
 
-use super::splat::Splat;
+use super::splat_tiles::Splat;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
 use crate::shaders::photon_splat::{Upsample, UpsamplePush};

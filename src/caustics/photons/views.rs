@@ -5,7 +5,7 @@
 
 use ash::vk;
 
-use super::PhotonInputs;
+use super::inputs::PhotonInputs;
 use crate::frame::geometry::{Attributes, draw_list};
 use crate::frame::light_views::draw_views;
 use crate::frame::scene_data::{DrawnInstance, SceneData};

@@ -5,10 +5,10 @@
 
 use ash::vk;
 
+use super::inputs::{VplInputs, vpl_count};
 use super::pyramid::{Pyramid, signed};
 use super::regions::{VALID, flattened_size};
 use super::visibility::{TRACED, Visibility};
-use super::{VplInputs, vpl_count};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::types::VplRange;

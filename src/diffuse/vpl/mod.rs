@@ -1,6 +1,7 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
+mod inputs;
 pub(crate) mod interpolate;
 mod ism;
 mod options;
@@ -12,30 +13,12 @@ mod visibility;
 
 use ash::vk;
 
-use crate::frame::gbuffer::GBuffer;
-use crate::frame::geometry::Geometry;
-use crate::frame::light_set::LightSet;
-use crate::frame::light_views::{LightViews, ReflectiveViews};
-use crate::frame::rays::TracedScene;
-use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use visibility::{Rays, Visibility};
 
+pub(crate) use self::inputs::VplInputs;
 pub use self::options::{VplSettings, VplShading, VplVisibility};
-
-/// What the method takes.
-pub(crate) struct VplInputs<'a> {
-    pub(crate) buffer: &'a GBuffer,
-    pub(crate) data: &'a SceneData,
-    pub(crate) geometry: &'a Geometry,
-    pub(crate) set: &'a LightSet,
-    pub(crate) lights: &'a LightViews,
-    pub(crate) reflective: ReflectiveViews,
-    /// Present where rays are traced for visibility or further bounces.
-    pub(crate) traced: Option<&'a TracedScene>,
-    pub(crate) settings: &'a VplSettings,
-}
 
 /// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
 pub(crate) struct Vpl {
@@ -85,9 +68,4 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
     };
     interpolate::interpolate(graph, inputs.buffer, inputs.settings, &pyramid, irradiance, diffuse);
     made
-}
-
-/// Number of VPLs in a buffer of two texels each.
-fn vpl_count(vpls: BufferRef<[f32; 4]>) -> u32 {
-    (vpls.count() / 2) as u32
 }

@@ -6,7 +6,7 @@
 
 use ash::vk;
 
-use super::VplInputs;
+use super::inputs::VplInputs;
 use super::visibility::Rays;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;

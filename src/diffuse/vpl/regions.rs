@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::VplInputs;
+use super::inputs::VplInputs;
 use super::pyramid::{Pyramid, signed};
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::VplInputs;
+use super::inputs::VplInputs;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
 use crate::shaders::types::ViewShare;

@@ -3,7 +3,7 @@
 use ash::vk;
 use glam::DVec3;
 
-use super::VplInputs;
+use super::inputs::VplInputs;
 use super::ism::imperfect_shadow_maps;
 use super::options::VplVisibility;
 use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};

@@ -1,0 +1,67 @@
+//! Lists of the scene's surfaces behind each texel of some views: what they are made from and where they lie.
+
+use ash::vk;
+
+use super::list_views::ListView;
+use super::options::PhotonSettings;
+use crate::frame::geometry::{DrawView, Geometry};
+use crate::frame::scene_data::{DrawnInstance, SceneData};
+use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::shaders::types;
+
+pub(super) const MOST_LEVELS: usize = 4;
+
+/// What the lists are made of.
+pub(crate) struct ListInputs<'a> {
+    pub(crate) data: &'a SceneData,
+    pub(crate) geometry: &'a Geometry,
+    /// For the projection `camera`.
+    pub(crate) camera: Option<&'a types::Camera>,
+    pub(crate) settings: &'a PhotonSettings,
+}
+
+/// The scene's lists.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneLists {
+    pub(crate) resolution: u32,
+    pub(crate) view_count: u32,
+    pub(crate) views: BufferRef<[f32; 4]>,
+    /// Four words for each texel of each view (glsl/photon_lists/node.glsl).
+    pub(crate) pixels: BufferRef<u32>,
+    pub(crate) nodes: BufferRef<[u32; 4]>,
+    /// How many nodes there are, or would be if the pool held them.
+    pub(crate) node_count: BufferRef<u32>,
+    pub(crate) blocks: Blocks,
+}
+
+/// Occupied depths of blocks of texels, level by level.
+#[derive(Clone, Copy)]
+pub(crate) struct Blocks {
+    pub(crate) slices: BufferRef<[u32; 4]>,
+    pub(crate) top: u32,
+    /// The first block of each level, from level 1.
+    pub(crate) first_of_level: [u32; MOST_LEVELS],
+}
+
+impl SceneLists {
+    pub(super) fn view_texels(&self) -> TexelBuffer {
+        self.views.texels(vk::Format::R32G32B32A32_SFLOAT)
+    }
+
+    pub(super) fn pixel_texels(&self) -> TexelBuffer {
+        self.pixels.texels(vk::Format::R32G32B32A32_UINT)
+    }
+
+    pub(super) fn node_texels(&self) -> TexelBuffer {
+        self.nodes.texels(vk::Format::R32G32B32A32_UINT)
+    }
+}
+
+/// Which instances a pass for opaque surfaces draws; the others are cut out by a texture's alpha.
+pub(super) fn is_solid(drawn: &DrawnInstance) -> bool {
+    !(drawn.masked && drawn.textured)
+}
+
+pub(super) fn draw_views(views: &[ListView], resolution: u32, push: impl Fn(u32) -> Vec<u8>) -> Vec<DrawView> {
+    (0..).zip(views).map(|(index, view)| view.draw_view(index, resolution, push(index))).collect()
+}

@@ -1,0 +1,28 @@
+//! What the method takes.
+
+use super::options::VplSettings;
+use crate::frame::gbuffer::GBuffer;
+use crate::frame::geometry::Geometry;
+use crate::frame::light_set::LightSet;
+use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::frame::rays::TracedScene;
+use crate::frame::scene_data::SceneData;
+use crate::graph::bindings::BufferRef;
+
+/// What the method takes.
+pub(crate) struct VplInputs<'a> {
+    pub(crate) buffer: &'a GBuffer,
+    pub(crate) data: &'a SceneData,
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) set: &'a LightSet,
+    pub(crate) lights: &'a LightViews,
+    pub(crate) reflective: ReflectiveViews,
+    /// Present where rays are traced for visibility or further bounces.
+    pub(crate) traced: Option<&'a TracedScene>,
+    pub(crate) settings: &'a VplSettings,
+}
+
+/// Number of VPLs in a buffer of two texels each.
+pub(super) fn vpl_count(vpls: BufferRef<[f32; 4]>) -> u32 {
+    (vpls.count() / 2) as u32
+}
