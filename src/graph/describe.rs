@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::Graph;
-use super::demand::Verdict;
+use super::declare::Graph;
+use super::demand::{Verdict, Version};
 use super::pass::Pass;
 
 /// The passes of a frame, which of them are skipped and why, and what flows between them.
@@ -27,7 +27,7 @@ impl Graph<'_> {
     pub(crate) fn describe(self) -> GraphDescription {
         let verdicts = self.verdicts();
         let describe = |(pass, verdict): (&Pass, &Verdict)| {
-            let names = |versions: &[super::Version]| -> Vec<String> {
+            let names = |versions: &[Version]| -> Vec<String> {
                 let names: BTreeSet<&String> =
                     versions.iter().map(|version| &self.resources[version.place.0].name).collect();
                 names.into_iter().cloned().collect()

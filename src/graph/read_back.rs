@@ -3,7 +3,8 @@
 use ash::vk;
 
 use super::barriers::Need;
-use super::{Body, Graph};
+use super::declare::Graph;
+use super::resource::Body;
 use crate::vulkan::{Barriers, Buffer, ImageBarrier, Location, Scope, VulkanError, texel_bytes};
 
 impl Graph<'_> {

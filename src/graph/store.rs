@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::barriers::State;
-use super::{Body, Resource};
+use super::resource::{Body, Resource};
 use crate::vulkan::{Buffer, Device, Image, ImageInfo, Location, Pipelines, Queries, Recorder, VulkanError};
 
 pub(super) struct StoredImage {

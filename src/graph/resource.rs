@@ -1,0 +1,37 @@
+//! Images and buffers of a frame, as it declares them.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::dependence::Dependence;
+use crate::vulkan::{Buffer, Image, ImageInfo};
+
+/// What stands behind a name of the frame.
+pub(super) enum Body {
+    Image(ImageInfo),
+    Buffer {
+        bytes: u64,
+    },
+    /// Written by the host before the frame.
+    Upload(Vec<u8>),
+    /// Owned by the scene: only read, and in its final layout.
+    ExternalBuffer(Arc<Buffer>),
+    ExternalImage(Arc<Image>),
+}
+
+/// An image or a buffer of the frame.
+pub(super) struct Resource {
+    pub(super) name: String,
+    pub(super) body: Body,
+    /// Key and dependence of the present content, for each mip level (one for a buffer).
+    pub(super) content: Vec<(u64, Dependence)>,
+    pub(super) image_usage: vk::ImageUsageFlags,
+    pub(super) buffer_usage: vk::BufferUsageFlags,
+    /// The piece that first writes it.
+    pub(super) piece: Option<String>,
+}
+
+/// The number of a read-back, among all that a frame asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ReadBack(pub(super) usize);
