@@ -4,7 +4,10 @@
 //! one frame is in flight at a time, and nothing is freed or overwritten before its fence has been waited for
 //! ([`Recorder::finish`] waits), which is the invariant that most `SAFETY` comments below lean on.
 
+mod copy;
+mod descriptors;
 mod device;
+mod draw;
 mod error;
 mod instance;
 mod memory;
@@ -15,8 +18,10 @@ mod recorder;
 mod report;
 mod transfer;
 
+pub(crate) use descriptors::{Descriptor, MaterialSets};
 pub use device::ContextOptions;
 pub(crate) use device::Device;
+pub(crate) use draw::{Attachment, Attachments};
 pub use error::VulkanError;
 pub use instance::Validation;
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
@@ -27,7 +32,7 @@ pub(crate) use pipelines::{
     pipeline_stages,
 };
 pub(crate) use queries::Queries;
-pub(crate) use recorder::{Attachment, Attachments, Barriers, Descriptor, ImageBarrier, MaterialSets, Recorder, Scope};
+pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
 pub(crate) use report::devices;
 pub(crate) use transfer::{buffer_with, image_with};
