@@ -9,6 +9,8 @@
 //! | `world` | the [`Scene`]: nodes, transforms, instances, revisions |
 //! | `editing` | adding things to it and changing them |
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
+//! | `ids` | the indices that name them |
+//! | `camera_choice` | which camera the scene is seen from |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
@@ -25,6 +27,7 @@ mod auto_view;
 mod builtin;
 pub(crate) mod bvh;
 mod camera;
+mod camera_choice;
 mod content_hash;
 mod digest;
 mod editing;
@@ -32,6 +35,7 @@ mod emitters;
 mod error;
 mod facts;
 mod gltf;
+mod ids;
 mod indoor_view;
 mod light;
 mod material;
@@ -46,6 +50,7 @@ pub use camera::{Camera, CameraView, Projection};
 pub use emitters::EmitterSample;
 pub use error::SceneError;
 pub use facts::Facts;
+pub use ids::{CameraId, LightId, MaterialId, MeshId, NodeId, TextureId};
 pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
@@ -53,26 +58,3 @@ pub use world::{Node, Revisions, Scene};
 
 pub(crate) use digest::Digest;
 pub(crate) use facts::has_specular_lobe;
-
-macro_rules! ids {
-    ($($(#[$doc:meta])* $id:ident,)*) => {$(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub struct $id(pub usize);
-    )*};
-}
-
-ids! {
-    /// Index into [`Scene::meshes`].
-    MeshId,
-    /// Index into [`Scene::materials`].
-    MaterialId,
-    /// Index into [`Scene::textures`].
-    TextureId,
-    /// Index into [`Scene::nodes`].
-    NodeId,
-    /// Index into [`Scene::lights`].
-    LightId,
-    /// Index into [`Scene::cameras`].
-    CameraId,
-}

@@ -1,7 +1,7 @@
 //! Images: found, checked against limits, decoded in parallel, and shared by the textures that use them.
 
-use super::Loader;
 use super::document::{self, get};
+use super::loader::Loader;
 use crate::scene::{Texture, TextureId, Wrap};
 use image::{ImageReader, Limits};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! Materials: factors brought into range, extensions merged in, textures asked for by use.
 
-use super::Loader;
 use super::document::{self, TextureInfo, get};
 use super::images::TextureRequests;
+use super::loader::Loader;
 use super::primitives::RawMesh;
 use crate::scene::{Alpha, Material, MaterialId, TextureRef};
 use std::collections::{BTreeSet, HashMap};

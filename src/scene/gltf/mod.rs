@@ -9,6 +9,7 @@ mod accessor;
 mod container;
 mod document;
 mod images;
+mod loader;
 mod materials;
 mod nodes;
 mod primitives;
@@ -17,6 +18,7 @@ use super::{Scene, SceneError};
 use accessor::Accessors;
 use container::Storage;
 use document::Document;
+use loader::Loader;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -86,14 +88,6 @@ fn unsupported(extensions: &[String]) -> Vec<&str> {
     names.into_iter().filter(|name| !SUPPORTED_EXTENSIONS.contains(name)).collect()
 }
 
-/// A scene on its way from the document. Faults are sentences without the scene's name, which [`Scene::from_bytes`] adds.
-struct Loader<'a> {
-    document: &'a Document,
-    storage: &'a Storage<'a>,
-    accessors: Accessors<'a>,
-    scene: Scene,
-}
-
 impl Loader<'_> {
     fn load(&mut self) -> Result<(), String> {
         let tree = self.read_tree()?;
@@ -103,11 +97,5 @@ impl Loader<'_> {
         let mesh_ids = self.add_meshes(&mesh_indices, meshes, &materials)?;
         let node_ids = self.add_nodes(&tree, &mesh_ids)?;
         self.add_animations(&tree, &node_ids)
-    }
-
-    /// Notes that something was left out or changed.
-    fn warn(&mut self, warning: String) {
-        tracing::warn!("scene {:?}: {warning}", self.scene.name);
-        self.scene.warnings.push(warning);
     }
 }

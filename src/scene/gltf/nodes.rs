@@ -1,8 +1,8 @@
 //! The active scene's nodes with their transforms, lights, cameras and animations.
 
-use super::Loader;
 use super::accessor::Integers;
 use super::document::{self, get};
+use super::loader::Loader;
 use crate::scene::animation::{Animation, Channel, Interpolation, Pose, Property, unit_quaternion};
 use crate::scene::{Camera, CameraId, Light, LightId, LightKind, MeshId, Node, NodeId, Projection};
 use glam::{DAffine3, DMat4, DVec3};

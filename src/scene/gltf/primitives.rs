@@ -1,8 +1,8 @@
 //! Meshes: every primitive becomes an indexed triangle list with checked attributes.
 
-use super::Loader;
 use super::accessor::Integers;
 use super::document::{self, get};
+use super::loader::Loader;
 use crate::scene::{Mesh, MeshId, Primitive, tangents};
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
