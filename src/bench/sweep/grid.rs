@@ -1,13 +1,11 @@
 //! The grid of a sweep: which series of settings are measured on which scenes, and what their error is.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::grid_file;
 use crate::bench::report::{ImageErrors, Run};
 use crate::renderer::{Preset, Slot, Technique};
 use crate::scene::{LightSpec, Scene, SceneError, builtin_names};
@@ -133,49 +131,7 @@ pub enum Metric {
     Flip,
 }
 
-/// A grid that cannot be read. One sentence: which file, where in it, what to do.
-#[derive(Debug, thiserror::Error)]
-pub enum GridError {
-    /// The file cannot be read.
-    #[error("{path} cannot be read: {reason}", path = .path.display())]
-    Read {
-        /// The file asked for.
-        path: PathBuf,
-        /// What the operating system says.
-        reason: String,
-    },
-    /// The file does not describe a grid.
-    #[error("{path}: {what}", path = .path.display())]
-    Wrong {
-        /// The file asked for.
-        path: PathBuf,
-        /// What is wrong in it.
-        what: String,
-    },
-}
-
 impl Grid {
-    /// Reads a TOML file; `docs/sweeps.md` says what it holds.
-    ///
-    /// # Errors
-    /// The file cannot be read, is no TOML, or names something that does not exist.
-    pub fn load(path: &Path) -> Result<Grid, GridError> {
-        let text = fs::read_to_string(path)
-            .map_err(|error| GridError::Read { path: path.to_owned(), reason: error.to_string() })?;
-        Grid::parse(&text, path)
-    }
-
-    /// Reads the text of a TOML file; `path` is what errors call it.
-    ///
-    /// # Errors
-    /// Those of [`Grid::load`], but for the reading.
-    pub fn parse(text: &str, path: &Path) -> Result<Grid, GridError> {
-        let wrong = |what: String| GridError::Wrong { path: path.to_owned(), what };
-        let grid = grid_file::parse(text).map_err(wrong)?;
-        grid.points().map_err(|error| wrong(error.to_string()))?;
-        Ok(grid)
-    }
-
     /// The error of a run that the grid asks for; `None` if it was not compared.
     pub fn error(&self, run: &Run) -> Option<f64> {
         let errors = self.errors(run, self.compare)?;

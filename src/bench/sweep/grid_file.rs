@@ -1,7 +1,8 @@
 //! The TOML of a grid, and the sentences on what is wrong in it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -9,6 +10,50 @@ use serde_json::Value;
 use super::grid::{Compare, FRAME_COLUMN, Grid, GridScene, Interleave, Metric, Published, Series};
 use crate::renderer::{Preset, Technique};
 use crate::scene::LightSpec;
+
+/// A grid that cannot be read. One sentence: which file, where in it, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum GridError {
+    /// The file cannot be read.
+    #[error("{path} cannot be read: {reason}", path = .path.display())]
+    Read {
+        /// The file asked for.
+        path: PathBuf,
+        /// What the operating system says.
+        reason: String,
+    },
+    /// The file does not describe a grid.
+    #[error("{path}: {what}", path = .path.display())]
+    Wrong {
+        /// The file asked for.
+        path: PathBuf,
+        /// What is wrong in it.
+        what: String,
+    },
+}
+
+impl Grid {
+    /// Reads a TOML file; `docs/sweeps.md` says what it holds.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no TOML, or names something that does not exist.
+    pub fn load(path: &Path) -> Result<Grid, GridError> {
+        let text = fs::read_to_string(path)
+            .map_err(|error| GridError::Read { path: path.to_owned(), reason: error.to_string() })?;
+        Grid::parse(&text, path)
+    }
+
+    /// Reads the text of a TOML file; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// Those of [`Grid::load`], but for the reading.
+    pub fn parse(text: &str, path: &Path) -> Result<Grid, GridError> {
+        let wrong = |what: String| GridError::Wrong { path: path.to_owned(), what };
+        let grid = parse(text).map_err(wrong)?;
+        grid.points().map_err(|error| wrong(error.to_string()))?;
+        Ok(grid)
+    }
+}
 
 /// The file as it is written, scenes and series still unread: their errors name them.
 #[derive(Debug, Deserialize)]
@@ -89,7 +134,7 @@ enum OneOrMore {
 ///
 /// # Errors
 /// One sentence that names the line, or the scene or series and the key.
-pub(super) fn parse(text: &str) -> Result<Grid, String> {
+fn parse(text: &str) -> Result<Grid, String> {
     let file: File = toml::from_str(text).map_err(|error| located(text, &error))?;
     if file.size.contains(&0) || file.frames == 0 || file.reference == Some(0) {
         return Err("size, frames and reference are at least 1".to_owned());

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{by_scene, summary_cells, summary_header};
+use super::summary::{summary_cells, summary_header};
 use crate::bench::error_rows::{ERROR_HEADER, ERROR_NOTE, error_rows};
-use crate::bench::report::Report;
+use crate::bench::report::{Report, Run};
 use crate::bench::rows::{self, HEADER};
 
 /// The whole report.
@@ -57,11 +57,23 @@ fn line(out: &mut String, text: &str) {
     let _ = writeln!(out, "{text}");
 }
 
+/// The runs of every scene together, in the order of their first run.
+fn by_scene(runs: &[Run]) -> Vec<Vec<&Run>> {
+    let mut scenes: Vec<Vec<&Run>> = Vec::new();
+    for run in runs {
+        match scenes.iter_mut().find(|scene| scene.iter().any(|other| other.scene == run.scene)) {
+            Some(scene) => scene.push(run),
+            None => scenes.push(vec![run]),
+        }
+    }
+    scenes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bench::error_rows::tests::compared_run;
-    use crate::bench::report::{Failure, Run};
+    use crate::bench::report::Failure;
     use crate::bench::samples::tests::example_run;
     use crate::renderer::DeviceReport;
 

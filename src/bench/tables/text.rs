@@ -2,7 +2,7 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 
-use super::{summary_cells, summary_header};
+use super::summary::{summary_cells, summary_header};
 use crate::bench::error_rows::{ERROR_HEADER, ERROR_NOTE, error_rows};
 use crate::bench::report::Run;
 use crate::bench::rows::{self, HEADER, Row};
