@@ -13,12 +13,13 @@ use irradia::reference::Cache;
 use irradia::renderer::{Context, Preset, Settings, Technique};
 
 use super::attributes::Picture;
+use super::files;
+use super::invocation::Invocation;
 use super::method_args::OptionArgs;
 use super::reference;
 use super::scene_args::SceneArgs;
 use super::terminal::{Progress, Steps, Terminal};
 use super::values::{self, Choice};
-use super::{Invocation, files};
 
 /// Measure techniques on scenes, pass by pass
 #[derive(Debug, Args)]

@@ -12,7 +12,7 @@ use irradia::metrics::{self, HEAT_MAP_RANGE};
 use irradia::output::{self, AtomicFile, Attributes, ExrImage, ImageFormat};
 use irradia::renderer::ColorImage;
 
-use super::Invocation;
+use super::invocation::Invocation;
 
 /// Measure how far a picture is from a reference: the image, and every slot that both files have
 #[derive(Debug, Args)]

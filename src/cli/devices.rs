@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use irradia::renderer::{Context, DeviceReport};
 
-use super::Invocation;
+use super::invocation::Invocation;
 
 /// List the Vulkan devices; the default is marked with a star
 #[derive(Debug, Args)]

@@ -8,7 +8,7 @@ use clap::Args;
 use irradia::output::AtomicFile;
 use irradia::renderer::{FrameRequest, Renderer, Timing};
 
-use super::Invocation;
+use super::invocation::Invocation;
 use super::method_args::MethodArgs;
 use super::scene_args::SceneArgs;
 

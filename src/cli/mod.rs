@@ -9,6 +9,7 @@ mod compare;
 mod devices;
 mod files;
 mod graph;
+mod invocation;
 mod method_args;
 mod reference;
 mod render;
@@ -20,11 +21,10 @@ mod values;
 
 use std::process::ExitCode;
 
-use anyhow::bail;
 use clap::error::ErrorKind;
-use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use irradia::renderer::{Context, ContextOptions, Validation};
+use clap::{CommandFactory, Parser, Subcommand};
 
+use self::invocation::{GlobalArgs, Invocation, WrongUsage};
 use self::terminal::{Terminal, Verbosity};
 
 /// Headless global illumination with Vulkan, and the bench that says what each method costs.
@@ -35,38 +35,6 @@ struct Cli {
     global: GlobalArgs,
     #[command(subcommand)]
     command: Command,
-}
-
-/// What every subcommand takes.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Everywhere")]
-struct GlobalArgs {
-    /// The device to use: a part of its name or its index in `irradia devices` [default: the first discrete GPU, else
-    /// integrated, else CPU]
-    #[arg(long, global = true, value_name = "NAME|INDEX")]
-    device: Option<String>,
-    /// Vulkan validation layers; any message they have makes the command fail
-    #[arg(long, global = true, value_enum, default_value_t = ValidationChoice::Off)]
-    validation: ValidationChoice,
-    /// Errors and results only: no progress, no warnings
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
-    quiet: bool,
-    /// Say more; twice for everything
-    #[arg(short, long, global = true, action = ArgAction::Count)]
-    verbose: u8,
-}
-
-/// The values of `--validation`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ValidationChoice {
-    /// None
-    Off,
-    /// Correct use of the interface
-    Core,
-    /// The same, and hazards between commands
-    Sync,
-    /// The same, and what only shows on the device, such as indices out of bounds
-    Gpu,
 }
 
 #[derive(Debug, Subcommand)]
@@ -105,50 +73,24 @@ pub(crate) fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
+            if let Some(usage) = error.downcast_ref() {
+                exit_of(usage);
+            }
             terminal.error(&format!("{error:#}"));
             ExitCode::FAILURE
         }
     }
 }
 
-/// What a subcommand has besides its own arguments.
-struct Invocation<'a> {
-    global: &'a GlobalArgs,
-    terminal: &'a Terminal,
-}
-
-impl Invocation<'_> {
-    /// The device that the arguments choose.
-    fn context(&self) -> anyhow::Result<Context> {
-        let validation = match self.global.validation {
-            ValidationChoice::Off => Validation::Off,
-            ValidationChoice::Core => Validation::Core,
-            ValidationChoice::Sync => Validation::Synchronization,
-            ValidationChoice::Gpu => Validation::GpuAssisted,
-        };
-        Ok(Context::new(&ContextOptions { device: self.global.device.clone(), validation })?)
-    }
-
-    /// Fails if the validation layers had anything to say.
-    fn check_validation(&self, context: &Context) -> anyhow::Result<()> {
-        let messages = context.validation_messages();
-        let Some(first) = messages.first() else { return Ok(()) };
-        for message in &messages[1..] {
-            tracing::warn!("validation: {message}");
-        }
-        bail!("the validation layers have {} message(s), the first: {first}", messages.len());
-    }
-}
-
-/// Wrong usage that only several arguments together show: says so as the parser would, and ends with status 2.
-fn wrong_usage(subcommand: &str, message: &str) -> ! {
+/// Says that the usage is wrong as the parser would, and ends with status 2.
+fn exit_of(usage: &WrongUsage) -> ! {
     let mut cli = Cli::command();
     cli.build();
-    let command = match cli.find_subcommand_mut(subcommand) {
+    let command = match cli.find_subcommand_mut(usage.subcommand) {
         Some(command) => command,
         None => &mut cli,
     };
-    command.error(ErrorKind::ArgumentConflict, message).exit()
+    command.error(ErrorKind::ArgumentConflict, usage.message).exit()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::tables;
@@ -12,10 +12,10 @@ use irradia::reference::{
     estimator_name, merge,
 };
 
+use super::invocation::{Invocation, WrongUsage};
 use super::scene_args::SceneArgs;
 use super::terminal::Steps;
 use super::values;
-use super::{Invocation, wrong_usage};
 
 /// Make a reference by unbiased light transport, and say how noisy it is
 ///
@@ -90,14 +90,15 @@ pub(crate) fn run(args: &ReferenceArgs, invocation: &Invocation<'_>) -> Result<(
     }
     if let Some(parts) = &args.merge {
         if args.no_cache && args.output.is_none() {
-            wrong_usage("reference", "--merge with --no-cache needs a place for the result; give it with -o FILE.exr");
+            let message = "--merge with --no-cache needs a place for the result; give it with -o FILE.exr";
+            bail!(WrongUsage { subcommand: "reference", message });
         }
         let merged = merge(parts)?;
         return report(&merged, &merged_places(args, &merged)?, invocation);
     }
     match (&args.scene, args.spp) {
         (Some(scene), Some(spp)) => make(args, scene, spp, invocation),
-        _ => wrong_usage("reference", "a reference needs a SCENE and --spp N"),
+        _ => bail!(WrongUsage { subcommand: "reference", message: "a reference needs a SCENE and --spp N" }),
     }
 }
 

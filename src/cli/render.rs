@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use irradia::image::tone_map;
 use irradia::output::{self, ImageFormat};
@@ -12,10 +12,11 @@ use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
 use irradia::scene::CameraView;
 
 use super::attributes::Picture;
+use super::files;
+use super::invocation::{Invocation, WrongUsage};
 use super::method_args::MethodArgs;
 use super::scene_args::SceneArgs;
 use super::values::{self, Choice, FrameRange, ImagePath};
-use super::{Invocation, files, wrong_usage};
 
 /// Render frames of a scene to EXR or PNG files
 #[derive(Debug, Args)]
@@ -57,7 +58,8 @@ struct Spent {
 pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> {
     let format = args.output.format;
     if format == ImageFormat::Png && !args.slots.is_empty() {
-        wrong_usage("render", "a PNG holds the image alone; write an .exr to get its --slots");
+        let message = "a PNG holds the image alone; write an .exr to get its --slots";
+        bail!(WrongUsage { subcommand: "render", message });
     }
     if format == ImageFormat::Exr && args.tonemap.is_some() {
         tracing::warn!("an EXR holds linear radiance, so --tonemap changes nothing");

@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Args;
 use irradia::scene::{Facts, Scene, builtin_names};
 
-use super::Invocation;
+use super::invocation::Invocation;
 
 /// List the built-in scenes
 #[derive(Debug, Args)]

@@ -15,10 +15,11 @@ use irradia::renderer::{Context, Settings};
 use irradia::scene::{CameraView, Scene};
 
 use super::bench::write_text;
+use super::invocation::Invocation;
 use super::reference::open_cache;
 use super::scene_args::warn_of;
 use super::terminal::{Progress, Steps, Terminal};
-use super::{Invocation, files, values};
+use super::{files, values};
 
 /// Measure a grid of techniques and settings on scenes: time against error
 #[derive(Debug, Args)]
