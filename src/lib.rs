@@ -20,5 +20,6 @@ mod graph;
 mod method;
 #[allow(dead_code, unreachable_pub, reason = "generated: not every struct of every shader is named by the host")]
 mod shaders;
+mod specular;
 #[allow(unsafe_code, reason = "the one home of Vulkan calls")]
 mod vulkan;

@@ -61,6 +61,18 @@ pub enum PixelFilter {
     Box,
 }
 
+impl PixelFilter {
+    /// All of them.
+    pub const ALL: [PixelFilter; 2] = [PixelFilter::Center, PixelFilter::Box];
+    /// Their names.
+    pub const NAMES: &[&str] = &["center", "box"];
+
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        PixelFilter::NAMES[self as usize]
+    }
+}
+
 /// Which light the slot `caustics` shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -70,4 +82,33 @@ pub enum CausticPaths {
     All,
     /// Only what met nothing but specular lobes on its way from the light, L S⁺ D E: what photons from specular surfaces can find.
     Specular,
+}
+
+impl CausticPaths {
+    /// All of them.
+    pub const ALL: [CausticPaths; 2] = [CausticPaths::All, CausticPaths::Specular];
+
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            CausticPaths::All => "all",
+            CausticPaths::Specular => "specular",
+        }
+    }
+}
+
+/// The light that a slot shows, or that a method can find for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct LightPaths {
+    /// Scatterings between the light and the first visible surface at most; `None`: no limit.
+    pub bounces: Option<u32>,
+    /// Which light the slot `caustics` shows.
+    pub caustics: CausticPaths,
+}
+
+impl LightPaths {
+    /// All paths with at most so many scatterings before the first visible surface.
+    pub fn up_to(bounces: impl Into<Option<u32>>) -> LightPaths {
+        LightPaths { bounces: bounces.into(), caustics: CausticPaths::All }
+    }
 }

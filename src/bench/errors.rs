@@ -8,10 +8,10 @@ use super::report::{ImageErrors, Reference as Compared, Run};
 use super::run::{Finished, SlotImages, Subject};
 use crate::metrics::{self, MetricsError};
 use crate::reference::{
-    Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, caustics_name,
-    estimator_name,
+    Cache, CausticPaths, Estimator, IMAGE, Job, PixelFilter, Progress, Reference, ReferenceRequest, estimator_name,
 };
 use crate::renderer::{ColorImage, Context, Settings, Slot};
+use crate::slot::LightPaths;
 
 /// The name of the sum of the slots that a technique fills.
 pub(crate) const COVERED: &str = "covered";
@@ -84,16 +84,16 @@ impl<'a> References<'a> {
         let bounces = settings.bounces();
         let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].into_iter();
         let filled = indirect.filter(|slot| settings.methods.fills(*slot));
-        let limits = filled.map(|slot| (slot.name().to_owned(), settings.light_paths(slot).0));
+        let limits = filled.map(|slot| (slot.name().to_owned(), settings.light_paths(slot).bounces));
         let slot_bounces: BTreeMap<String, Option<u32>> = limits.filter(|(_, limit)| *limit != bounces).collect();
-        let compared = |spp, bounces, caustics, slot_bounces| Compared {
+        let compared = |spp, bounces, caustics: CausticPaths, slot_bounces| Compared {
             technique: estimator_name(Estimator::Path).to_owned(),
             spp,
             bounces,
-            caustics: caustics_name(caustics).to_owned(),
+            caustics: caustics.name().to_owned(),
             slot_bounces,
         };
-        let equal_caustics = settings.light_paths(Slot::Caustics).1;
+        let equal_caustics = settings.light_paths(Slot::Caustics).caustics;
         let run = std::mem::take(&mut finished.run);
         finished.run = Run {
             reference: Some(compared(equal.spp, bounces, equal_caustics, slot_bounces)),
@@ -110,7 +110,7 @@ impl<'a> References<'a> {
     /// The slots as far as the methods go, each from the reference that is limited like it.
     fn equal_to(&mut self, settings: &Settings, filter: PixelFilter) -> Result<Rc<Reference>, ErrorsUnknown> {
         let kind_of = |slot| {
-            let (bounces, caustics) = settings.light_paths(slot);
+            let LightPaths { bounces, caustics } = settings.light_paths(slot);
             (bounces, caustics, filter)
         };
         let whole = self.get(kind_of(Slot::Diffuse))?;

@@ -1,3 +1,5 @@
 //! Methods of the `caustics` slot.
 
-pub(crate) mod photons;
+use crate::method::{for_all_methods, modules};
+
+for_all_methods! { modules caustics }

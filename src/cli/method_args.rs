@@ -2,10 +2,8 @@
 
 use anyhow::Result;
 use clap::Args;
-use irradia::reference::PixelFilter;
-use irradia::renderer::{
-    CausticsMethod, DiffuseMethod, DirectMethod, Preset, Settings, Slot, SpecularMethod, Technique,
-};
+use irradia::renderer::{Preset, Settings, Slot, Technique};
+use irradia::slot::PixelFilter;
 
 use super::values::{self, Setting};
 
@@ -14,22 +12,22 @@ use super::values::{self, Setting};
 #[command(next_help_heading = "Methods")]
 pub(crate) struct OptionArgs {
     /// The method of the direct slot, instead of the technique's
-    #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(DirectMethod::NAMES))]
+    #[arg(long, value_name = "METHOD", value_parser = values::method(Slot::Direct))]
     direct: Option<String>,
     /// The method of the diffuse slot, instead of the technique's
-    #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(DiffuseMethod::NAMES))]
+    #[arg(long, value_name = "METHOD", value_parser = values::method(Slot::Diffuse))]
     diffuse: Option<String>,
     /// The method of the caustics slot, instead of the technique's
-    #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(CausticsMethod::NAMES))]
+    #[arg(long, value_name = "METHOD", value_parser = values::method(Slot::Caustics))]
     caustics: Option<String>,
     /// The method of the specular slot, instead of the technique's
-    #[arg(long, value_name = "METHOD", value_parser = clap::builder::PossibleValuesParser::new(SpecularMethod::NAMES))]
+    #[arg(long, value_name = "METHOD", value_parser = values::method(Slot::Specular))]
     specular: Option<String>,
     /// Samples a pixel of traced paths, the same as --set path.spp=N
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     spp: Option<u32>,
-    /// Scatterings between the light and the first visible surface at most; 0: direct light alone. The same as --set path.bounces=N, vpl.bounces=N
-    /// and photons.bounces=N (of these at most 16) [default: each method's own]
+    /// Scatterings between the light and the first visible surface at most; 0: direct light alone. The same as --set PIECE.bounces=N for every piece
+    /// that has such a setting, as far as it takes so many [default: each method's own]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
     /// Which of the equally good sequences of samples is taken
@@ -42,9 +40,6 @@ pub(crate) struct OptionArgs {
     #[arg(long, value_name = "PIECE.KEY=VALUE", value_parser = values::setting)]
     set: Vec<Setting>,
 }
-
-/// What `vpl.bounces` and `photons.bounces` take.
-const MOST_RASTER_BOUNCES: u32 = 16;
 
 impl OptionArgs {
     fn chooses_filter(&self) -> bool {
@@ -67,12 +62,10 @@ impl OptionArgs {
         }
         let path = &mut settings.path;
         path.spp = self.spp.unwrap_or(path.spp);
-        path.bounces = self.bounces.or(path.bounces);
         path.seed = self.seed.unwrap_or(path.seed);
         path.filter = self.filter.unwrap_or(path.filter);
         if let Some(bounces) = self.bounces {
-            let bounces = bounces.min(MOST_RASTER_BOUNCES);
-            (settings.vpl.bounces, settings.photons.bounces) = (bounces, bounces);
+            settings.set_bounces(bounces)?;
         }
         for Setting { key, value } in &self.set {
             settings.set(key, value)?;

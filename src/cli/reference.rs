@@ -8,8 +8,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::tables;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::{
-    Cache, CausticPaths, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, caustics_name,
-    estimator_name, merge,
+    Cache, CausticPaths, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name,
+    merge,
 };
 
 use super::invocation::{Invocation, WrongUsage};
@@ -204,9 +204,8 @@ fn estimator() -> impl TypedValueParser<Value = Estimator> {
 }
 
 fn caustics() -> impl TypedValueParser<Value = CausticPaths> {
-    const ALL: [CausticPaths; 2] = [CausticPaths::All, CausticPaths::Specular];
-    PossibleValuesParser::new(ALL.map(caustics_name)).try_map(|name| {
-        let found = ALL.into_iter().find(|caustics| caustics_name(*caustics) == name);
+    PossibleValuesParser::new(CausticPaths::ALL.map(CausticPaths::name)).try_map(|name| {
+        let found = CausticPaths::ALL.into_iter().find(|caustics| caustics.name() == name);
         found.ok_or_else(|| format!("there are no caustics {name:?}"))
     })
 }

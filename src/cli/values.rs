@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::output::ImageFormat;
-use irradia::reference::{PixelFilter, filter_name};
-use irradia::renderer::{Preset, Settings, Slot, Technique, ToneMap};
+use irradia::renderer::{Methods, Preset, Settings, Slot, Technique, ToneMap};
+use irradia::slot::PixelFilter;
 
 /// `WxH`, both at least 1.
 pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
@@ -124,11 +124,15 @@ pub(crate) fn slot_choice() -> impl TypedValueParser<Value = Choice<Slot>> {
 }
 
 pub(crate) fn pixel_filter() -> impl TypedValueParser<Value = PixelFilter> {
-    const ALL: [PixelFilter; 2] = [PixelFilter::Center, PixelFilter::Box];
-    PossibleValuesParser::new(ALL.map(filter_name)).try_map(|name| {
-        let found = ALL.into_iter().find(|filter| filter_name(*filter) == name);
-        found.ok_or_else(|| format!("there is no filter {name:?}"))
+    PossibleValuesParser::new(PixelFilter::NAMES).try_map(|name| {
+        let found = PixelFilter::ALL.into_iter().find(|filter| filter.name() == name);
+        found.ok_or("there is no such filter")
     })
+}
+
+/// The name of a method of a slot.
+pub(crate) fn method(slot: Slot) -> PossibleValuesParser {
+    PossibleValuesParser::new(Methods::names(slot))
 }
 
 const TONE_MAPS: [(&str, ToneMap); 3] =

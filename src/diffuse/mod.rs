@@ -1,4 +1,5 @@
 //! Methods of the `diffuse` slot.
 
-pub(crate) mod rsm;
-pub(crate) mod vpl;
+use crate::method::{for_all_methods, modules};
+
+for_all_methods! { modules diffuse }

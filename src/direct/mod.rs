@@ -1,4 +1,5 @@
 //! Methods of the `direct` slot.
 
-pub(crate) mod shadow_map;
-pub(crate) mod traced;
+use crate::method::{for_all_methods, modules};
+
+for_all_methods! { modules direct }

@@ -4,9 +4,10 @@
 
 mod camera_paths;
 mod cost;
+mod estimate;
 mod light_paths;
 mod noise;
-mod options;
+pub(crate) mod options;
 pub(crate) mod path;
 mod paths;
 mod photon_map;
@@ -15,7 +16,7 @@ mod sums;
 mod view;
 
 pub(crate) use self::cost::TraceCost;
+pub(crate) use self::estimate::{Estimating, Estimator, Samples};
 pub use self::noise::Noise;
-pub use self::options::PathSettings;
 pub use self::sums::{SampleSource, SlotSums};
 pub(crate) use self::view::EstimateRequest;

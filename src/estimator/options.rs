@@ -1,19 +1,17 @@
 //! Options of the estimators.
 
-use serde::{Deserialize, Serialize};
-
+use crate::method::{OptionKind, options};
 use crate::slot::PixelFilter;
 
-/// Options of the methods that trace paths.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PathSettings {
-    /// Samples a pixel of one frame; 1 to 1048576. Cost: linear. Noise: its inverse square root.
-    pub spp: u32,
+options! {
+    /// Options of the methods that trace paths.
+    PathOptions, "path":
+    /// Samples a pixel of one frame. Noise: its inverse square root.
+    spp: u32 = 64, draft = 16, high = 256; OptionKind::Integer(1, 1 << 20), "samples", "linear";
     /// Scatterings between the light and the first visible surface at most; 0: direct light alone; null: no limit.
-    pub bounces: Option<u32>,
-    /// Where in a pixel light is sampled: `center` or `box`.
-    pub filter: PixelFilter,
+    bounces: Option<u32> = None; OptionKind::Limit(0, u32::MAX), "scatterings", "sublinear";
+    /// Where in a pixel light is sampled.
+    filter: PixelFilter = PixelFilter::Center; OptionKind::Choice(PixelFilter::NAMES), "", "";
     /// Which of the equally good sequences of samples is taken.
-    pub seed: u32,
+    seed: u32 = 0; OptionKind::Integer(0, u32::MAX), "", "";
 }

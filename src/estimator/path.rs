@@ -9,7 +9,9 @@ use std::sync::Arc;
 
 use super::camera_paths::{self, Sums, Wave};
 use super::cost::TraceCost;
+use super::estimate::{Estimating, Estimator, Samples};
 use super::light_paths::{self, Splats, Swarm, add_splats};
+use super::options::PathOptions;
 use super::paths::Paths;
 use super::sums::{SampleSource, SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
@@ -17,6 +19,7 @@ use crate::frame::rays::TracedScene;
 use crate::graph::{Graph, GraphDescription, PassTiming, Store, Timing};
 use crate::method::Error;
 use crate::scene::Scene;
+use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Device, VulkanError};
 
 /// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
@@ -48,16 +51,6 @@ impl PathTracer {
         })
     }
 
-    /// Traces paths through this scene from now on.
-    pub(crate) fn set_scene(&mut self, scene: Arc<TracedScene>) {
-        self.scene = Some(scene);
-    }
-
-    /// Gives its memory back, until a scene is set again.
-    pub(crate) fn release_scene(&mut self) {
-        self.scene = None;
-    }
-
     /// Lets the lights of the scene send out paths or not, whatever it contains: the expectation is the same. Only where something
     /// scatters specularly do paths carry what their weights need.
     #[cfg(test)]
@@ -72,68 +65,11 @@ impl PathTracer {
         View::new(request, origin)
     }
 
-    /// How the passes to come are timed.
-    pub(crate) fn set_timing(&mut self, timing: Timing) {
-        self.timing = timing;
-    }
-
-    /// What was spent since this was last asked.
-    pub(crate) fn take_cost(&mut self) -> TraceCost {
-        std::mem::take(&mut self.cost)
-    }
-
-    /// The passes of a frame in which nothing changed.
-    pub(crate) fn unchanged_passes(&self) -> Vec<PassTiming> {
-        vec![PassTiming {
-            piece: "path".to_owned(),
-            pass: "generate".to_owned(),
-            ms: None,
-            skipped: Some("unchanged: geometry, materials, lights, camera".to_owned()),
-            work: BTreeMap::new(),
-        }]
-    }
-
-    /// The passes that take a path to its first vertices and on to the camera or a light; those of later vertices are the same.
-    pub(crate) fn describe(&mut self, view: &View) -> Result<GraphDescription, VulkanError> {
-        let scene = self.scene.clone().expect("set before it is described");
-        let limit = self.store.device().limits().max_storage_buffer_range;
-        let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
-        let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
-        let mut graph = Graph::new(&mut self.store);
-        let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
-        let sums = Sums::declare(&mut graph, &wave);
-        camera_paths::generate(&mut graph, &paths, view, &wave);
-        for depth in 0..last_depth(view, 0, 1).min(2) {
-            camera_paths::advance(&mut graph, &paths, &scene, view, depth);
-        }
-        sums.add(&mut graph, &paths, &wave);
-        if scene.needs_light_paths(view.bounces) {
-            let splats = Splats::declare(&mut graph, &scene, view, limit)?;
-            let swarm = Swarm { first_path: 0, path_count: paths.capacity, seed: view.seed };
-            light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
-            for depth in 0..2 {
-                light_paths::advance(&mut graph, &paths, &splats, &scene, view, depth);
-            }
-            splats.want(&mut graph);
-        } else {
-            graph.skip("particle/emit", NO_LIGHT_PATHS);
-        }
-        paths.want(&mut graph);
-        Ok(graph.describe())
-    }
-
     fn note_memory(&mut self) {
         for (piece, bytes) in self.store.memory_by_piece() {
             let held = self.held.entry(piece).or_insert(0);
             *held = bytes.max(*held);
         }
-    }
-
-    /// The most device memory that was held at a time, bytes, by piece; `scene` is the scene itself.
-    pub(crate) fn memory_bytes(&self) -> BTreeMap<String, u64> {
-        let mut bytes = self.held.clone();
-        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, |scene| scene.bytes()));
-        bytes
     }
 
     /// The sums over samples `first .. first + count` of half `half` of every pixel.
@@ -274,6 +210,106 @@ impl PathTracer {
         add_splats(sums, &executed.take(read_back), &scene);
         self.cost.add(executed);
         Ok(())
+    }
+}
+
+impl Estimating for PathTracer {
+    fn set_scene(&mut self, scene: Arc<TracedScene>) {
+        self.scene = Some(scene);
+    }
+
+    fn release_scene(&mut self) {
+        self.scene = None;
+    }
+
+    fn set_timing(&mut self, timing: Timing) {
+        self.timing = timing;
+    }
+
+    fn add_up(
+        &mut self,
+        request: &EstimateRequest,
+        half: u32,
+        first: u32,
+        count: u32,
+    ) -> Result<SlotSums, VulkanError> {
+        let view = self.view(request);
+        self.sums(&view, half, first, count)
+    }
+
+    fn take_cost(&mut self) -> TraceCost {
+        std::mem::take(&mut self.cost)
+    }
+
+    fn memory_bytes(&self) -> BTreeMap<String, u64> {
+        let mut bytes = self.held.clone();
+        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, |scene| scene.bytes()));
+        bytes
+    }
+
+    fn unchanged_passes(&self) -> Vec<PassTiming> {
+        vec![PassTiming {
+            piece: "path".to_owned(),
+            pass: "generate".to_owned(),
+            ms: None,
+            skipped: Some("unchanged: geometry, materials, lights, camera".to_owned()),
+            work: BTreeMap::new(),
+        }]
+    }
+
+    fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError> {
+        let scene = self.scene.clone().expect("set before it is described");
+        let view = &self.view(request);
+        let limit = self.store.device().limits().max_storage_buffer_range;
+        let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
+        let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
+        let mut graph = Graph::new(&mut self.store);
+        let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
+        let sums = Sums::declare(&mut graph, &wave);
+        camera_paths::generate(&mut graph, &paths, view, &wave);
+        for depth in 0..last_depth(view, 0, 1).min(2) {
+            camera_paths::advance(&mut graph, &paths, &scene, view, depth);
+        }
+        sums.add(&mut graph, &paths, &wave);
+        if scene.needs_light_paths(view.bounces) {
+            let splats = Splats::declare(&mut graph, &scene, view, limit)?;
+            let swarm = Swarm { first_path: 0, path_count: paths.capacity, seed: view.seed };
+            light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
+            for depth in 0..2 {
+                light_paths::advance(&mut graph, &paths, &splats, &scene, view, depth);
+            }
+            splats.want(&mut graph);
+        } else {
+            graph.skip("particle/emit", NO_LIGHT_PATHS);
+        }
+        paths.want(&mut graph);
+        Ok(graph.describe())
+    }
+}
+
+/// Path tracing with next-event estimation, and light tracing for what it finds badly.
+pub(crate) struct Path;
+
+impl Estimator for Path {
+    const NAME: &'static str = "path";
+    const SLOTS: &'static [Slot] = &Slot::ALL;
+    type Options = PathOptions;
+
+    fn light_paths(options: &PathOptions) -> LightPaths {
+        LightPaths::up_to(options.bounces)
+    }
+
+    fn filter(options: &PathOptions) -> PixelFilter {
+        options.filter
+    }
+
+    fn samples(options: &PathOptions) -> Samples {
+        let PathOptions { spp, bounces, filter, seed } = *options;
+        Samples { spp, bounces, caustics: CausticPaths::All, filter, seed }
+    }
+
+    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError> {
+        Ok(Box::new(PathTracer::new(device)?))
     }
 }
 

@@ -1,11 +1,13 @@
-//! The image: the sum of the slots.
+//! The image: the sum of the slots. And slots that come from estimators.
+
+use std::sync::Arc;
 
 use ash::vk;
 
 use super::gbuffer::GBuffer;
-use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
-use crate::shaders::compose::{Image, ImagePush};
+use crate::graph::{Dependence, Graph};
+use crate::shaders::compose::{Estimate, Image, ImagePush};
 use crate::slot::Slot;
 
 /// Declares the pass that adds up the slots that there are; a slot that no method fills is `None`.
@@ -16,11 +18,12 @@ pub(crate) fn compose(
     slot: impl Fn(Slot) -> Option<ImageRef>,
 ) -> ImageRef {
     let image = graph.image("image", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
-    // What stands for an absent slot is bound but not read.
-    let bound = |name: Slot| slot(name).unwrap_or(buffer.depth).sampled();
+    // What stands for an absent slot is bound but not read; nor is the depth where the slot `emission` shows the sky.
+    let depth = slot(Slot::Emission).unwrap_or(buffer.depth);
+    let bound = |name: Slot| slot(name).unwrap_or(depth).sampled();
     let present = (0..).zip(Slot::ALL).filter(|(_, name)| slot(*name).is_some()).map(|(bit, _)| 1_u32 << bit).sum();
     let pass = Image {
-        depth: buffer.depth.sampled(),
+        depth: depth.sampled(),
         emission: bound(Slot::Emission),
         direct: bound(Slot::Direct),
         diffuse: bound(Slot::Diffuse),
@@ -30,5 +33,15 @@ pub(crate) fn compose(
         push: ImagePush { sky, slots: present },
     };
     graph.pass("compose/image", pass).pixels(buffer.size);
+    image
+}
+
+/// Declares the pass that takes a slot from an estimator's means, three floats a pixel, whose content `key` names.
+pub(crate) fn estimated(graph: &mut Graph<'_>, slot: Slot, size: [u32; 2], means: &Arc<[u8]>, key: u64) -> ImageRef {
+    let all = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS | Dependence::CAMERA;
+    let means = graph.upload_shared::<f32>(&format!("estimate.{slot}.means"), means.clone(), key, all);
+    let image = graph.image(&format!("estimate.{slot}"), vk::Format::R32G32B32A32_SFLOAT, size);
+    let pass = Estimate { means: means.read(), slot: image.write() };
+    graph.pass(&format!("compose/estimate-{slot}"), pass).pixels(size);
     image
 }

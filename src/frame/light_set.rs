@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::light_options::LightSettings;
 use super::scene_data::SceneData;
 use super::view_layout::{Atlas, ViewShape, ViewSource};
 use crate::graph::hash_of;
@@ -19,6 +18,21 @@ const EMITTER: u32 = 3;
 
 /// A spot wider than this half angle (tangent 3.7) is seen through a cube instead of one stretched view.
 const WIDEST_CONE: f64 = 75.5 * PI / 180.0;
+
+/// What stands for the lights, and how large their views are, in texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct LightDetail {
+    /// Side of a spot, directional or point-face light view.
+    pub(crate) resolution: u32,
+    /// Cosine emitters that stand for all emissive surfaces together.
+    pub(crate) emitter_samples: u32,
+    /// Side of an emitter sample's hemicube top.
+    pub(crate) emitter_resolution: u32,
+    /// Directional lights that stand for the sky.
+    pub(crate) sky_samples: u32,
+    /// Half width of the filter over depths.
+    pub(crate) filter_radius: u32,
+}
 
 /// All lights of a frame and their views.
 #[derive(Clone, Debug, Default)]
@@ -34,29 +48,27 @@ impl LightSet {
         held: LightSet,
         scene: &Scene,
         data: &SceneData,
-        settings: &LightSettings,
-        filter_radius: u32,
+        detail: LightDetail,
         largest_side: u32,
     ) -> LightSet {
         let revisions = scene.revisions();
         // Directional views are fitted to the geometry.
-        let options = serde_json::to_string(&(settings, filter_radius)).unwrap_or_default();
-        let key = hash_of(&(scene.identity(), revisions.geometry, revisions.lights, options));
+        let key = hash_of(&(scene.identity(), revisions.geometry, revisions.lights, detail));
         if held.key == key {
             return held;
         }
-        let mut builder = Builder { data, settings, lights: Vec::new(), shapes: Vec::new(), corners: None };
+        let mut builder = Builder { data, detail, lights: Vec::new(), shapes: Vec::new(), corners: None };
         builder.add_punctual(scene);
         builder.add_emitters(scene);
         builder.add_sky(scene);
-        let atlas = Atlas::new(builder.shapes, filter_radius, largest_side);
+        let atlas = Atlas::new(builder.shapes, detail.filter_radius, largest_side);
         LightSet { key, lights: builder.lights, atlas }
     }
 }
 
 struct Builder<'a> {
     data: &'a SceneData,
-    settings: &'a LightSettings,
+    detail: LightDetail,
     lights: Vec<types::Light>,
     shapes: Vec<ViewShape>,
     /// All vertices in render space, gathered when the first directional light needs them.
@@ -90,7 +102,7 @@ impl Builder<'_> {
     fn add_punctual(&mut self, scene: &Scene) {
         for placed in shining_lights(scene) {
             let axes = axes_of(scene.world_transform(placed.node).matrix3);
-            let source = self.source(placed.position - self.data.origin, self.settings.resolution, placed.intensity);
+            let source = self.source(placed.position - self.data.origin, self.detail.resolution, placed.intensity);
             let light = punctual_light(&placed, self.data.origin);
             let shapes = match placed.kind {
                 LightKind::Point => ViewShape::cube(source, axes),
@@ -105,7 +117,7 @@ impl Builder<'_> {
     }
 
     fn add_emitters(&mut self, scene: &Scene) {
-        for sample in scene.emitter_samples(self.settings.emitter_samples as usize) {
+        for sample in scene.emitter_samples(self.detail.emitter_samples as usize) {
             if sample.power.iter().all(|&channel| channel <= 0.0) {
                 continue;
             }
@@ -116,7 +128,7 @@ impl Builder<'_> {
                 let normal = sample.normal * *side;
                 let intensity = sample.power.map(|power| (f64::from(power) / (PI * sides.len() as f64)) as f32);
                 let position = sample.position - self.data.origin;
-                let source = self.source(position, self.settings.emitter_resolution, intensity);
+                let source = self.source(position, self.detail.emitter_resolution, intensity);
                 let light = types::Light {
                     position_rs: position.as_vec3().to_array(),
                     kind: EMITTER,
@@ -140,7 +152,7 @@ impl Builder<'_> {
         if sky.iter().all(|&channel| channel <= 0.0) || scene.bounds().is_none() {
             return;
         }
-        let count = self.settings.sky_samples;
+        let count = self.detail.sky_samples;
         let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
         for index in 0..count {
             let share = f64::from(index) + 0.5;
@@ -160,7 +172,7 @@ impl Builder<'_> {
                 range: 0.0,
                 view_count: 0,
             };
-            let source = self.source(DVec3::ZERO, self.settings.resolution, intensity);
+            let source = self.source(DVec3::ZERO, self.detail.resolution, intensity);
             let shapes = self.parallel(scene, source, axes_around(direction, DMat3::IDENTITY));
             self.add(light, shapes);
         }

@@ -7,7 +7,7 @@ pub(crate) mod camera;
 pub(crate) mod compose;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;
-pub(crate) mod light_options;
+pub(crate) mod inputs;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod octahedral;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::session::Session;
-use crate::estimator::EstimateRequest;
 use crate::estimator::TraceCost;
 use crate::estimator::path::PathTracer;
+use crate::estimator::{EstimateRequest, Estimating};
 use crate::frame::rays::TracedScene;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, MaterialId, Primitive, Projection, Scene};

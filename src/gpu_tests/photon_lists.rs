@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, Mat4, Vec3};
 
-use super::photon_stage::{Comparison, HIT_NONE, Stage, coherent_rays, direction, photon_settings};
+use super::photon_stage::{Comparison, HIT_NONE, Stage, coherent_rays, direction, photon_options};
 use super::rays::{NO_TRIANGLE, Random, Ray, ray, trace_in};
 use super::scenes::{builtin, closed_box, lambert, place, quad};
 use super::session::Session;
@@ -15,7 +15,7 @@ use crate::shaders::types;
 fn every_surface_behind_a_texel_is_in_its_list_once() {
     let session = Session::open();
     let mut room = Stage::new(&session, closed_box(1.0, lambert([0.5; 3])));
-    let lists = room.lists(&photon_settings(&[("resolution", "32")]), None);
+    let lists = room.lists(&photon_options(&[("resolution", "32")]), None);
     // A texel around the room stays empty; every other one has a wall in front and one behind.
     assert_eq!(lists.count, 3 * 30 * 30 * 2);
     for texel in 0..3 * 32 * 32 {
@@ -31,7 +31,7 @@ fn every_surface_behind_a_texel_is_in_its_list_once() {
     let mut ring = Stage::new(&session, builtin("ring"));
     let materials = ring.scene.materials().len() as u32;
     for geometry in ["lists", "layers:3"] {
-        let lists = ring.lists(&photon_settings(&[("resolution", "64"), ("geometry", geometry)]), None);
+        let lists = ring.lists(&photon_options(&[("resolution", "64"), ("geometry", geometry)]), None);
         let mut nodes = 0;
         for texel in 0..3 * 64 * 64 {
             let list = lists.of_texel(texel);
@@ -52,7 +52,7 @@ fn every_surface_behind_a_texel_is_in_its_list_once() {
 #[test]
 fn a_pool_that_is_too_small_grows() {
     let session = Session::open();
-    let settings = photon_settings(&[("resolution", "32")]);
+    let settings = photon_options(&[("resolution", "32")]);
     let mut stage = Stage::new(&session, builtin("ring"));
     let cut = stage.lists(&settings, Some(16));
     let [(name, [held, needed])] = &cut.outgrown[..] else { panic!("{:?}", cut.outgrown) };
@@ -74,8 +74,8 @@ fn lists_stand_while_the_geometry_does() {
     for geometry in ["lists", "layers:2"] {
         for projection in ["scene", "camera"] {
             let changes = [("resolution", "32"), ("geometry", geometry), ("projection", projection)];
-            let first = stage.lists(&photon_settings(&changes), None);
-            let again = stage.lists(&photon_settings(&changes), None);
+            let first = stage.lists(&photon_options(&changes), None);
+            let again = stage.lists(&photon_options(&changes), None);
             assert_eq!(first.count, again.count);
             assert!(again.passes.iter().all(|pass| pass.skipped.is_some()), "{changes:?}: {:?}", again.passes);
         }
@@ -88,7 +88,7 @@ fn a_hole_in_a_masked_surface_leaves_no_node() {
     let mut stage = Stage::new(&session, lattice());
     for geometry in ["lists", "layers:2"] {
         // Squares of eight texels; of three views one sees the floor, the others its edge.
-        let settings = photon_settings(&[("resolution", "34"), ("geometry", geometry)]);
+        let settings = photon_options(&[("resolution", "34"), ("geometry", geometry)]);
         assert_eq!(stage.lists(&settings, None).count, 32 * 32 / 2, "{geometry}");
     }
 }
@@ -102,7 +102,7 @@ fn rays_hit_what_they_hit_in_the_hierarchy() {
         let mut stage = Stage::new(&session, builtin(name));
         let rays = stage.surface_rays(3000, 2);
         for trace in ["march", "lines"] {
-            let found = stage.compare(&photon_settings(&[("resolution", resolution), ("trace", trace)]), &rays);
+            let found = stage.compare(&photon_options(&[("resolution", resolution), ("trace", trace)]), &rays);
             let share = |count: usize| 1000 * count / found.rays;
             assert!(share(found.right) >= right, "{name} {resolution} {trace}: {found}");
             assert!(share(found.missed) <= missed, "{name} {resolution} {trace}: {found}");
@@ -117,7 +117,7 @@ fn hits_do_not_depend_on_the_order_of_nodes() {
     let mut stage = Stage::new(&session, builtin("ring-occluded"));
     let rays = stage.surface_rays(2000, 5);
     for trace in ["march", "lines"] {
-        let settings = photon_settings(&[("resolution", "64"), ("trace", trace)]);
+        let settings = photon_options(&[("resolution", "64"), ("trace", trace)]);
         let first = stage.trace(&settings, &rays).hits;
         assert_eq!(first, stage.trace(&settings, &rays).hits, "{trace}: a second run");
         let lists = stage.lists(&settings, None);
@@ -142,7 +142,7 @@ fn rays_that_meet_nothing_and_no_rays_at_all() {
     for trace in ["march", "lines"] {
         for changes in [[("projection", "scene")], [("projection", "camera")]] {
             let changes = [&changes[..], &[("resolution", "32"), ("trace", trace)]].concat();
-            let settings = photon_settings(&changes);
+            let settings = photon_options(&changes);
             let found = stage.trace(&settings, &rays);
             assert!(found.hits.iter().all(|hit| hit[0] == HIT_NONE && hit[3] == NO_TRIANGLE), "{changes:?}");
             assert!(stage.trace(&settings, &[]).hits.is_empty());
@@ -171,7 +171,7 @@ fn four_layers_leak_where_lists_do_not() {
     };
     let rays: Vec<Ray> = rays.iter().zip(&truth.hits).filter(inside).map(|(ray, _)| *ray).collect();
     let mut found = |geometry: &str| {
-        let settings = photon_settings(&[("projection", "camera"), ("geometry", geometry)]);
+        let settings = photon_options(&[("projection", "camera"), ("geometry", geometry)]);
         stage.compare(&settings, &rays)
     };
     let [lists, four, sixteen] = ["lists", "layers:4", "layers:16"].map(&mut found);
@@ -188,7 +188,7 @@ fn steps_grow_more_slowly_than_the_resolution() {
     let mut stage = Stage::new(&session, builtin("ring"));
     let rays = coherent_rays(40);
     let mut steps = |resolution: &str| {
-        let found = stage.trace(&photon_settings(&[("resolution", resolution)]), &rays);
+        let found = stage.trace(&photon_options(&[("resolution", resolution)]), &rays);
         found.work("march.0", "steps") as f64
     };
     let slope = (steps("512") / steps("64")).log2() / 3.0;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::photon_stage::{Found, Stage, coherent_rays, photon_settings};
+use super::photon_stage::{Found, Stage, coherent_rays, photon_options};
 use super::scenes::builtin;
 use super::session::Session;
 use crate::scene::Scene;
@@ -39,10 +39,10 @@ fn rays_against_the_hierarchy() {
                 let place = format!("{name} {resolution} {trace}");
                 let given = [("resolution", &*resolution), ("trace", &*trace)];
                 for views in &views {
-                    let settings = photon_settings(&[&given[..], &[("views", views)]].concat());
+                    let settings = photon_options(&[&given[..], &[("views", views)]].concat());
                     println!("{place} {views} views: {}", stage.compare(&settings, &rays));
                 }
-                let settings = photon_settings(&given);
+                let settings = photon_options(&given);
                 for (what, rays) in &timed {
                     let first = stage.trace(&settings, rays);
                     let before = cpu_ms();

@@ -13,14 +13,15 @@ use crate::frame::geometry::Geometry;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins::unpack_direction;
 use crate::graph::{Dependence, Graph, Store};
-use crate::renderer::{PassTiming, PhotonSettings, PhotonTracing, Preset, Settings, Technique, Timing};
+use crate::renderer::options::{PhotonOptions, PhotonTracing};
+use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
 use crate::scene::bvh::{Bvh, BvhTriangle};
 use crate::scene::{CameraView, Scene};
 use crate::shaders::types;
 
 pub(super) const HIT_NONE: u32 = u32::MAX;
 
-pub(super) fn photon_settings(changes: &[(&str, &str)]) -> PhotonSettings {
+pub(super) fn photon_options(changes: &[(&str, &str)]) -> PhotonOptions {
     let mut settings = Settings::new(Technique::Hybrid, Preset::Default);
     for (key, value) in changes {
         settings.set(&format!("photons.{key}"), value).expect("a setting and its value");
@@ -81,11 +82,11 @@ impl Stage {
         (b - a).cross(c - a).normalize_or_zero()
     }
 
-    pub(super) fn lists(&mut self, settings: &PhotonSettings, pool: Option<usize>) -> Lists {
+    pub(super) fn lists(&mut self, settings: &PhotonOptions, pool: Option<usize>) -> Lists {
         let camera = camera(&self.view(), [64, 64], self.data.origin);
         let mut graph = Graph::new(&mut self.store);
         let geometry = Geometry::import(&mut graph, &self.data);
-        let inputs = ListInputs { data: &self.data, geometry: &geometry, camera: Some(&camera), settings };
+        let inputs = ListInputs { data: &self.data, geometry: &geometry, camera: Some(&camera), options: settings };
         let lists = match pool {
             None => build(&mut graph, &inputs),
             Some(nodes) => build_from(&mut graph, &inputs, nodes),
@@ -100,20 +101,20 @@ impl Stage {
         Lists { pixels, nodes, count: count[0], outgrown: executed.outgrown, passes: executed.passes }
     }
 
-    pub(super) fn trace(&mut self, settings: &PhotonSettings, rays: &[Ray]) -> Found {
+    pub(super) fn trace(&mut self, settings: &PhotonOptions, rays: &[Ray]) -> Found {
         self.store.invalidate();
         self.trace_again(settings, rays, 0)
     }
 
     /// Lists that are made already stand; another `salt` traces the rays again.
-    pub(super) fn trace_again(&mut self, settings: &PhotonSettings, rays: &[Ray], salt: u32) -> Found {
+    pub(super) fn trace_again(&mut self, settings: &PhotonOptions, rays: &[Ray], salt: u32) -> Found {
         self.trace_in(settings, rays, salt, None)
     }
 
     /// Through these lists, if there are any, in place of those that the frame makes.
     pub(super) fn trace_in(
         &mut self,
-        settings: &PhotonSettings,
+        settings: &PhotonOptions,
         rays: &[Ray],
         salt: u32,
         held: Option<&Lists>,
@@ -126,7 +127,7 @@ impl Stage {
         loop {
             let mut graph = Graph::new(&mut self.store);
             let geometry = Geometry::import(&mut graph, &self.data);
-            let inputs = ListInputs { data: &self.data, geometry: &geometry, camera: Some(&camera), settings };
+            let inputs = ListInputs { data: &self.data, geometry: &geometry, camera: Some(&camera), options: settings };
             let mut lists = build(&mut graph, &inputs);
             if let Some(held) = held {
                 let (pixels, nodes) = held.reversed();
@@ -154,7 +155,7 @@ impl Stage {
         }
     }
 
-    pub(super) fn compare(&mut self, settings: &PhotonSettings, rays: &[Ray]) -> Comparison {
+    pub(super) fn compare(&mut self, settings: &PhotonOptions, rays: &[Ray]) -> Comparison {
         let found = self.trace(settings, rays);
         let truth = trace_in(&mut self.store, &self.bvh, rays);
         let bounds = self.scene.bounds().expect("triangles");

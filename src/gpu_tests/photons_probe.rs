@@ -106,8 +106,13 @@ impl OnDevice<'_> {
         let device = store.device().clone();
         let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
         let limit = device.limits().max_image_dimension2_d;
-        let set =
-            LightSet::update(LightSet::default(), scene, &data, &settings.lights, settings.shadow.filter_radius, limit);
+        let set = LightSet::update(
+            LightSet::default(),
+            scene,
+            &data,
+            settings.lights.detail(settings.shadow_map.filter_radius),
+            limit,
+        );
         let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
         OnDevice { scene, settings, store, data, set, traced }
     }
@@ -130,7 +135,7 @@ impl OnDevice<'_> {
             set,
             lights: &lights,
             traced: Some(traced),
-            settings: &settings.photons,
+            options: &settings.photons,
         };
         let made = trace_all(&mut graph, &inputs);
         let reads = [

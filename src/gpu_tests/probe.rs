@@ -3,13 +3,18 @@
 use glam::{DVec3, UVec4, Vec3, Vec4};
 
 use super::session::Session;
+use crate::diffuse::{rsm, vpl};
+use crate::frame::gbuffer::GBuffer;
 use crate::frame::light_set::LightSet;
+use crate::frame::light_views::ReflectiveViews;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins;
+use crate::graph::bindings::ImageRef;
 use crate::graph::{Graph, ReadBack};
-use crate::renderer::declare::{Declared, Prepared, declare, sends_rays};
-use crate::renderer::{FrameRequest, Settings, Slot, Timing};
+use crate::method::{FrameCx, Rays};
+use crate::renderer::declare::{Shared, inputs_of, wanted_methods};
+use crate::renderer::{DiffuseMethod, FrameRequest, Settings, Slot, Timing};
 use crate::scene::Scene;
 use crate::shaders::types;
 
@@ -19,6 +24,21 @@ pub(super) struct Probe {
     pub(super) camera: types::Camera,
     pub(super) origin: DVec3,
     reads: Vec<Vec<u8>>,
+}
+
+/// A declared frame, and what its methods made on the way to their slots.
+pub(super) struct Declared {
+    pub(super) gbuffer: GBuffer,
+    pub(super) reflective: Option<ReflectiveViews>,
+    pub(super) rsm: Option<rsm::Made>,
+    pub(super) vpl: Option<vpl::Made>,
+    slots: Vec<(Slot, ImageRef)>,
+}
+
+impl Declared {
+    fn slot(&self, slot: Slot) -> Option<ImageRef> {
+        self.slots.iter().find(|(known, _)| *known == slot).map(|(_, image)| *image)
+    }
 }
 
 /// Makes a frame and reads back what `wanted` names.
@@ -33,14 +53,36 @@ pub(super) fn probe(
     let device = store.device().clone();
     let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
     let limit = device.limits().max_image_dimension2_d;
-    let set =
-        LightSet::update(LightSet::default(), scene, &data, &settings.lights, settings.shadow.filter_radius, limit);
+    let detail = settings.lights.detail(settings.shadow_map.filter_radius);
+    let set = LightSet::update(LightSet::default(), scene, &data, detail, limit);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
-    let traces = Slot::ALL.into_iter().any(|slot| sends_rays(settings, &scene.facts(), slot));
-    let traced = traces.then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
-    let prepared = Prepared { scene, data: &data, lights: &set, traced: traced.as_ref() };
+    let methods = wanted_methods(settings, &scene.facts(), &set, |slot| request.wants(slot));
+    let inputs = inputs_of(&methods);
+    let traced =
+        (inputs.rays != Rays::None).then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
     let mut graph = Graph::new(&mut store);
-    let declared = declare(&mut graph, &prepared, settings, request);
+    let shared = Shared::declare(&mut graph, scene, &data, request);
+    let frame = shared.inputs(&mut graph, &data, &set, traced.as_ref(), inputs);
+    let mut declared = Declared {
+        gbuffer: shared.surface.clone(),
+        reflective: frame.reflective,
+        rsm: None,
+        vpl: None,
+        slots: Vec::new(),
+    };
+    for wanted in methods.iter().filter(|wanted| wanted.skipped.is_none()) {
+        let cx = &mut FrameCx::new(&mut graph, &frame, wanted.inputs);
+        let image = match settings.methods.diffuse {
+            DiffuseMethod::Rsm if wanted.method.slot == Slot::Diffuse => {
+                Some(declared.rsm.insert(rsm::rsm(cx, &settings.rsm)).diffuse)
+            }
+            DiffuseMethod::Vpl if wanted.method.slot == Slot::Diffuse => {
+                Some(declared.vpl.insert(vpl::vpl(cx, &settings.vpl)).diffuse)
+            }
+            _ => (wanted.method.declare)(cx, settings).expect("the device allows it"),
+        };
+        declared.slots.extend(image.map(|image| (wanted.method.slot, image)));
+    }
     let wanted = wanted(&mut graph, &declared);
     let mut executed = graph.run(Timing::Frame).expect("a frame");
     let reads = wanted.into_iter().map(|read_back| executed.take(read_back)).collect();

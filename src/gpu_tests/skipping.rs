@@ -141,7 +141,7 @@ fn what_nobody_asks_for_is_not_made() {
 
     let mut settings = renderer.settings().clone();
     settings.methods.diffuse = DiffuseMethod::None;
-    renderer.set_settings(settings);
+    renderer.set_settings(settings).expect("within their ranges");
     let frame = renderer.render(&scene, &whole).expect("a frame");
     assert!(!any(&ran(&frame), "diffuse"), "{:?}", ran(&frame));
     assert!(frame.slots[&Slot::Diffuse].pixels.iter().all(|pixel| *pixel == [0.0; 3]));

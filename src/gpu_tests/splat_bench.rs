@@ -15,7 +15,8 @@ use crate::frame::geometry::Geometry;
 use crate::frame::octahedral::pack_direction;
 use crate::frame::scene_data::SceneData;
 use crate::graph::{Dependence, Graph, Store};
-use crate::renderer::{PassTiming, PhotonSettings, Preset, Settings, Technique, Timing};
+use crate::renderer::options::PhotonOptions;
+use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
 use crate::scene::{CameraView, Projection, Scene};
 use crate::shaders::types;
 
@@ -51,7 +52,7 @@ impl<'s> Bench<'s> {
     /// π·L of a white diffuse surface, which is E, and the passes.
     pub(super) fn run(
         &mut self,
-        settings: &PhotonSettings,
+        settings: &PhotonOptions,
         photons: &[Landed],
         timing: Timing,
     ) -> (Vec<DVec3>, Vec<PassTiming>) {
@@ -84,7 +85,7 @@ impl<'s> Bench<'s> {
             stage: 0,
             capacity: count + 1,
         };
-        let inputs = SplatInputs { buffer: &buffer, settings, length: 1.0, tiles_at_once: self.tiles_at_once };
+        let inputs = SplatInputs { buffer: &buffer, options: settings, length: 1.0, tiles_at_once: self.tiles_at_once };
         let slot = splat(&mut graph, &inputs, &landed);
         let read = graph.read_back(slot);
         let mut executed = graph.run(timing).expect("a frame");
@@ -95,7 +96,7 @@ impl<'s> Bench<'s> {
         (colors, executed.passes)
     }
 
-    pub(super) fn irradiance(&mut self, settings: &PhotonSettings, photons: &[Landed]) -> Vec<DVec3> {
+    pub(super) fn irradiance(&mut self, settings: &PhotonOptions, photons: &[Landed]) -> Vec<DVec3> {
         let found = self.run(settings, photons, Timing::Frame).0;
         assert!(found.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
         found
@@ -129,7 +130,7 @@ impl<'s> Bench<'s> {
     }
 }
 
-pub(super) fn settings(changes: &[(&str, &str)]) -> PhotonSettings {
+pub(super) fn settings(changes: &[(&str, &str)]) -> PhotonOptions {
     let mut settings = Settings::new(Technique::Hybrid, Preset::Default);
     for (key, value) in [("footprint", "way")].iter().chain(changes) {
         settings.set(&format!("photons.{key}"), value).expect("a setting and its value");

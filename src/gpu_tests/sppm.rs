@@ -8,7 +8,7 @@ use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, v
 use super::session::Session;
 use crate::estimator::path::PathTracer;
 use crate::estimator::sppm::SppmSource;
-use crate::estimator::{EstimateRequest, SampleSource, SlotSums};
+use crate::estimator::{EstimateRequest, Estimating, SampleSource, SlotSums};
 use crate::frame::rays::TracedScene;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Light, LightKind, LightSpec, Material, Scene};

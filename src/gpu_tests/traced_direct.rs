@@ -309,7 +309,7 @@ fn a_renderer_holds_what_rays_meet_while_it_sends_any() {
     let mut renderer = session.renderer(&Settings::new(Technique::Direct, Preset::Default));
     let bytes = |frame: &Frame| frame.timings.memory_bytes["scene"];
     let mapped = bytes(&renderer.render(&scene, &request).expect("a frame"));
-    renderer.set_settings(traced(4));
+    renderer.set_settings(traced(4)).expect("within their ranges");
     let first = renderer.render(&scene, &request).expect("a frame");
     assert!(bytes(&first) > mapped);
     let again = renderer.render(&scene, &request).expect("a frame");
@@ -325,7 +325,7 @@ fn a_renderer_holds_what_rays_meet_while_it_sends_any() {
     assert!(error < 1e-3, "{error:.2e}");
     assert!(compared("the edit", &direct_of(&first), &fresh).0 > 0.01, "it shows");
 
-    renderer.set_settings(Settings::new(Technique::Direct, Preset::Default));
+    renderer.set_settings(Settings::new(Technique::Direct, Preset::Default)).expect("a preset");
     let last = renderer.render(&scene, &request).expect("a frame");
     assert!(bytes(&last) < bytes(&first), "the memory is given back");
 }

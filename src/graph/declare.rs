@@ -111,8 +111,21 @@ impl<'s> Graph<'s> {
     pub(crate) fn upload<T: Pod>(&mut self, name: &str, elements: &[T], dependence: Dependence) -> BufferRef<T> {
         let bytes: &[u8] = bytemuck::cast_slice(elements);
         let key = hash_of(&(name, bytes));
-        let id = self.add(name, Body::Upload(bytes.to_vec()), 1, |_| (key, dependence));
+        let id = self.add(name, Body::Upload(bytes.into()), 1, |_| (key, dependence));
         BufferRef { id, count: elements.len(), element: PhantomData }
+    }
+
+    /// A buffer that the host fills with `bytes`, elements of `T`, whose content `key` names.
+    pub(crate) fn upload_shared<T: Pod>(
+        &mut self,
+        name: &str,
+        bytes: Arc<[u8]>,
+        key: u64,
+        dependence: Dependence,
+    ) -> BufferRef<T> {
+        let count = bytes.len() / size_of::<T>().max(1);
+        let id = self.add(name, Body::Upload(bytes), 1, |_| (key, dependence));
+        BufferRef { id, count, element: PhantomData }
     }
 
     /// A buffer of the scene, whose content `key` names. Several pieces may import the same one.

@@ -8,7 +8,7 @@ use super::demand::{Verdict, Version};
 use super::pass::Pass;
 
 /// The passes of a frame, which of them are skipped and why, and what flows between them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct GraphDescription {
     passes: Vec<DescribedPass>,
 }
@@ -51,6 +51,11 @@ impl DescribedPass {
 }
 
 impl GraphDescription {
+    /// Adds the passes of another graph of the same frame, which run after these.
+    pub(crate) fn append(&mut self, mut other: GraphDescription) {
+        self.passes.append(&mut other.passes);
+    }
+
     /// One line a pass, in the order of execution.
     pub fn text(&self) -> String {
         let mut out = String::new();

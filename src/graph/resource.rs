@@ -14,7 +14,7 @@ pub(super) enum Body {
         bytes: u64,
     },
     /// Written by the host before the frame.
-    Upload(Vec<u8>),
+    Upload(Arc<[u8]>),
     /// Owned by the scene: only read, and in its final layout.
     ExternalBuffer(Arc<Buffer>),
     ExternalImage(Arc<Image>),

@@ -12,6 +12,9 @@ pub enum Error {
     /// The frame has no pixels.
     #[error("a frame of {0}x{1} pixels cannot be made; ask for at least 1x1")]
     EmptyFrame(u32, u32),
+    /// An option is out of its range.
+    #[error("{0}")]
+    Settings(String),
     /// Photons of references do not know which lobes scattered them.
     #[error("the estimator sppm shows caustics of all paths; those of specular paths alone take the estimator path")]
     SppmCaustics,

@@ -1,9 +1,45 @@
-//! What a method is, and what all methods share: presets, choices by name, the error of a frame.
+//! What a method is: one folder with a [`Method`] and its [`Options`], and one line in the list of `list.rs`.
 
 mod choices;
 mod error;
+mod frame_cx;
+mod light_options;
+mod list;
+mod options;
 mod preset;
 
 pub(crate) use self::choices::choices;
 pub use self::error::Error;
+pub(crate) use self::frame_cx::{FrameCx, Inputs, Rays};
+pub use self::light_options::LightOptions;
+pub(crate) use self::list::{for_all_methods, modules};
+pub use self::options::{OptionFault, OptionInfo, OptionKind, Options};
+pub(crate) use self::options::{Piece, options, written};
 pub use self::preset::{Preset, UnknownPreset};
+
+use crate::graph::bindings::ImageRef;
+use crate::scene::Facts;
+use crate::slot::{LightPaths, Slot};
+
+/// One way to fill a slot.
+pub(crate) trait Method {
+    /// The name on the command line, and in its piece `slot/name`.
+    const NAME: &'static str;
+    const SLOT: Slot;
+    type Options: Options;
+
+    /// Which light it can find: what it is compared with.
+    fn light_paths(options: &Self::Options) -> LightPaths;
+
+    /// What it takes of a frame, besides the G-buffer.
+    fn inputs(options: &Self::Options) -> Inputs;
+
+    /// Why the scene or the options leave it nothing to do.
+    fn skip(options: &Self::Options, facts: &Facts) -> Option<&'static str>;
+
+    /// Declares its passes in the order in which they run. Returns the slot's radiance in W/(m² sr), one texel a pixel; none where it is black.
+    ///
+    /// # Errors
+    /// What the device does not allow.
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &Self::Options) -> Result<Option<ImageRef>, Error>;
+}

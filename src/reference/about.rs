@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::key::{caustics_name, estimator_name, filter_name, hexadecimal};
+use super::key::{estimator_name, hexadecimal};
 use super::{REFERENCE_VERSION, ReferenceKey, ReferenceRequest};
 use crate::output::Attributes;
 use crate::scene::{CameraView, Projection, Scene};
@@ -48,8 +48,8 @@ impl About {
             format!("{width}x{height}"),
             estimator_name(request.estimator).to_owned(),
             bounces,
-            caustics_name(request.caustics).to_owned(),
-            filter_name(request.filter).to_owned(),
+            request.caustics.name().to_owned(),
+            request.filter.name().to_owned(),
             request.seed.to_string(),
             super::CHUNK_SAMPLES.to_string(),
         ];

@@ -3,7 +3,7 @@
 use crate::scene::{CameraView, Digest, Projection, Scene};
 use crate::slot::Slot;
 
-use super::{CausticPaths, Estimator, PixelFilter, ReferenceRequest};
+use super::request::{Estimator, ReferenceRequest};
 
 /// Counts the changes of how references are made; those of another version are not used. Raise it with every change that
 /// makes other samples of the same request: sampling, materials, lights, slots.
@@ -24,7 +24,7 @@ impl ReferenceKey {
         digest.u32s(&[REFERENCE_VERSION, super::CHUNK_SAMPLES, Slot::ALL.len() as u32]);
         digest.bytes(&scene.content_hash()).u32s(size);
         add_camera(&mut digest, camera);
-        digest.text(estimator_name(*estimator)).text(caustics_name(*caustics)).text(filter_name(*filter));
+        digest.text(estimator_name(*estimator)).text(caustics.name()).text(filter.name());
         digest.option(*bounces, |digest, bounces| digest.u32s(&[bounces])).u32s(&[*seed]);
         ReferenceKey(hexadecimal(&digest.finish()))
     }
@@ -57,22 +57,6 @@ pub fn estimator_name(estimator: Estimator) -> &'static str {
     match estimator {
         Estimator::Path => "path",
         Estimator::Sppm => "sppm",
-    }
-}
-
-/// The name of which caustics a reference shows, on the command line and in files.
-pub fn caustics_name(caustics: CausticPaths) -> &'static str {
-    match caustics {
-        CausticPaths::All => "all",
-        CausticPaths::Specular => "specular",
-    }
-}
-
-/// The name of a filter on the command line and in files.
-pub fn filter_name(filter: PixelFilter) -> &'static str {
-    match filter {
-        PixelFilter::Center => "center",
-        PixelFilter::Box => "box",
     }
 }
 

@@ -28,7 +28,7 @@ pub use self::blocks::{CHUNK_SAMPLES, MAX_SPP};
 pub use self::cache::{Cache, Entry, EntryContent};
 pub use self::error::ReferenceError;
 pub use self::file::ReferenceFile;
-pub use self::key::{REFERENCE_VERSION, ReferenceKey, caustics_name, estimator_name, filter_name};
+pub use self::key::{REFERENCE_VERSION, ReferenceKey, estimator_name};
 pub use self::merge::merge;
 pub use self::obtain::{Goal, Job, Progress, obtain};
 pub use self::request::{Estimator, ReferenceRequest};

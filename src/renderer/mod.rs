@@ -18,32 +18,25 @@
 //! # }
 //! ```
 
+mod choices;
 mod context;
 pub(crate) mod declare;
+mod estimates;
 mod frame;
-mod path_frame;
+mod methods;
 mod render;
 mod settings;
-mod traced_paths;
+mod technique;
 
+pub use choices::{CausticsMethod, DiffuseMethod, DirectMethod, Methods, SpecularMethod, UnknownMethod};
 pub use context::Context;
 pub use frame::{Estimate, Frame, FrameRequest};
 pub use render::Renderer;
-pub use settings::{
-    CausticsMethod, DiffuseMethod, DirectMethod, Methods, Settings, SettingsError, SpecularMethod, Technique,
-};
+pub use settings::{Settings, SettingsError, options};
+pub use technique::{Technique, UnknownTechnique};
 
-pub use crate::caustics::photons::{
-    ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
-};
-pub use crate::diffuse::rsm::RsmSettings;
-pub use crate::diffuse::vpl::{VplSettings, VplShading, VplVisibility};
-pub use crate::direct::shadow_map::ShadowSettings;
-pub use crate::direct::traced::TracedSettings;
-pub use crate::estimator::PathSettings;
-pub use crate::frame::light_options::LightSettings;
 pub use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing};
 pub use crate::image::{ColorImage, ToneMap};
-pub use crate::method::{Error, Preset, UnknownPreset};
+pub use crate::method::{Error, OptionFault, OptionInfo, OptionKind, Options, Preset, UnknownPreset};
 pub use crate::slot::Slot;
 pub use crate::vulkan::{ContextOptions, DeviceReport, Validation, VulkanError};

@@ -5,16 +5,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::context::Context;
-use super::declare::{Prepared, declare, sends_rays};
+use super::declare::{Declared, Prepared, declare, inputs_of, wanted_methods};
+use super::estimates::{Estimates, Means};
 use super::frame::{Frame, FrameRequest};
+use super::methods::{EstimatorEntry, Filler};
 use super::settings::Settings;
-use super::traced_paths::TracedPaths;
 use crate::frame::light_set::LightSet;
 use crate::frame::rays::{TracedScene, surfaces_key, traced_key};
 use crate::frame::scene_data::SceneData;
-use crate::graph::{FrameTimings, Graph, GraphDescription, Outgrown, Store};
+use crate::graph::{FrameTimings, Graph, GraphDescription, Outgrown, Store, hash_of};
 use crate::image::ColorImage;
-use crate::method::Error;
+use crate::method::{Error, Rays};
 use crate::scene::Scene;
 use crate::slot::Slot;
 use crate::vulkan::{Device, VulkanError};
@@ -24,23 +25,27 @@ use crate::vulkan::{Device, VulkanError};
 /// What a scene, its lights and the camera leave unchanged from one frame to the next is not made again. Any scene may be
 /// rendered at any time; changing between scenes uploads them anew.
 pub struct Renderer {
-    pub(super) settings: Settings,
+    settings: Settings,
     data: Option<SceneData>,
     lights: LightSet,
-    /// Held while some method sends rays.
+    /// Held while something sends rays.
     traced: Option<Arc<TracedScene>>,
     store: Store,
-    pub(super) paths: Option<TracedPaths>,
+    /// Held once an estimator fills a slot.
+    estimates: Option<Estimates>,
 }
 
 impl Renderer {
     /// A renderer on `context`'s device.
     ///
     /// # Errors
-    /// If the device has no memory left.
+    /// If an option is out of range, or the device has no memory left.
     pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
         let store = Store::new(context.shared_device())?;
-        Ok(Renderer { settings, data: None, lights: LightSet::default(), traced: None, store, paths: None })
+        let held = (None, LightSet::default(), None, None);
+        let (data, lights, traced, estimates) = held;
+        check(&settings)?;
+        Ok(Renderer { settings, data, lights, traced, store, estimates })
     }
 
     /// The settings of the frames to come.
@@ -49,44 +54,41 @@ impl Renderer {
     }
 
     /// Replaces the settings.
-    pub fn set_settings(&mut self, settings: Settings) {
+    ///
+    /// # Errors
+    /// If an option is out of range; the old settings stand.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
+        check(&settings)?;
         self.settings = settings;
+        Ok(())
     }
 
     /// Forgets all results, so that the next frame makes everything anew; for timings of whole frames. The scene stays on
     /// the device.
     pub fn invalidate(&mut self) {
         self.store.invalidate();
-        if let Some(paths) = &mut self.paths {
-            paths.invalidate();
+        if let Some(estimates) = &mut self.estimates {
+            estimates.invalidate();
         }
     }
 
-    /// Makes a frame of the scene as it is now.
+    /// Makes a frame of the scene as it is now. If some buffer could not know how much it had to hold and was too small, the frame is made again
+    /// with a larger one.
     ///
     /// # Errors
     /// A frame without pixels or beyond the device's limits, exhausted memory, a lost device. The last two name the last
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_size(request)?;
-        let traces_paths = self.settings.methods.traces_paths();
-        let facts = scene.facts();
-        if !traces_paths && !Slot::ALL.into_iter().any(|slot| sends_rays(&self.settings, &facts, slot)) {
-            self.release_traced_scene();
-        }
-        if traces_paths { self.render_paths(scene, request) } else { self.draw(scene, request) }
-    }
-
-    pub(super) fn device(&self) -> &Arc<Device> {
-        self.store.device()
-    }
-
-    /// A frame whose methods are all passes of one graph. If some buffer could not know how much it had to hold and was too small, the
-    /// frame is made again with a larger one.
-    pub(super) fn draw(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
+        let start = Instant::now();
+        let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
+        let means = self.estimate(scene, request, &mut timings)?;
         loop {
-            let (frame, outgrown) = self.draw_once(scene, request)?;
+            let (mut frame, outgrown) = self.draw_once(scene, request, means.as_deref())?;
             if outgrown.is_empty() {
+                timings.add(std::mem::take(&mut frame.timings));
+                timings.host_ms = start.elapsed().as_secs_f64() * 1e3;
+                (frame.timings, frame.estimate) = (timings, means.map(|means| means.estimate.clone()));
                 return Ok(frame);
             }
             for (name, [held, needed]) in outgrown {
@@ -95,64 +97,94 @@ impl Renderer {
         }
     }
 
-    fn draw_once(&mut self, scene: &Scene, request: &FrameRequest) -> Result<(Frame, Vec<Outgrown>), Error> {
+    fn device(&self) -> &Arc<Device> {
+        self.store.device()
+    }
+
+    /// The estimator that fills some wanted slot.
+    fn estimator(&self, request: &FrameRequest) -> Option<&'static EstimatorEntry> {
+        let estimated = |slot: &Slot| matches!(self.settings.methods.filler(*slot), Some(Filler::Estimator(_)));
+        let wanted = Slot::ALL.into_iter().filter(|slot| request.wants(*slot)).any(|slot| estimated(&slot));
+        self.settings.methods.estimator().filter(|_| wanted)
+    }
+
+    /// The estimator at work on the scene as it is now.
+    fn estimates(&mut self, entry: &EstimatorEntry, scene: &Scene) -> Result<&mut Estimates, Error> {
+        let (device, traced) = (self.device().clone(), self.traced_scene(scene)?);
+        let estimates = Estimates::update(self.estimates.take(), entry, &device, traced)?;
+        Ok(self.estimates.insert(estimates))
+    }
+
+    /// The means of the slots that an estimator fills.
+    fn estimate(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        timings: &mut FrameTimings,
+    ) -> Result<Option<Arc<Means>>, Error> {
+        let Some(entry) = self.estimator(request) else { return Ok(None) };
+        let start = Instant::now();
+        let samples = (entry.samples)(&self.settings);
+        let estimates = self.estimates(entry, scene)?;
+        timings.upload_ms = start.elapsed().as_secs_f64() * 1e3;
+        let seen = hash_of(&(traced_key(scene), scene.sky().map(f32::to_bits)));
+        let asked = samples.of(request.size, &request.camera);
+        Ok(Some(estimates.means(&asked, samples, request.timing, seen, timings)?))
+    }
+
+    fn draw_once(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        means: Option<&Means>,
+    ) -> Result<(Frame, Vec<Outgrown>), Error> {
         let start = Instant::now();
         let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
-        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
+        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref(), means };
         let mut graph = Graph::new(&mut self.store);
-        let declared = declare(&mut graph, &prepared, &self.settings, request);
+        let declared = declare(&mut graph, &prepared, &self.settings, request)?;
 
         let mut slots = Vec::new();
-        for &slot in &request.slots {
-            let made = declared.slot(slot);
-            if let (Some(image), false) = (made, request.read_back) {
-                graph.want(image);
-            }
-            slots.push((slot, made.filter(|_| request.read_back).map(|image| graph.read_back(image))));
+        let mut image = None;
+        if request.read_back {
+            slots = request
+                .slots
+                .iter()
+                .map(|&slot| (slot, declared.slot(slot).map(|image| graph.read_back(image))))
+                .collect();
+            image = declared.image.filter(|_| request.image).map(|image| graph.read_back(image));
+        } else {
+            want(&mut graph, &declared, request);
         }
-        let image = declared.image.filter(|_| request.image);
-        if let (Some(image), false) = (image, request.read_back) {
-            graph.want(image);
-        }
-        let image = image.filter(|_| request.read_back).map(|image| graph.read_back(image));
         // Display values are of use to the host alone.
         let display = declared.display.map(|display| graph.read_back_buffer(display));
 
         let mut executed = graph.run(request.timing)?;
         let size = request.size;
-        let mut frame = Frame {
-            size,
-            image: None,
-            slots: BTreeMap::new(),
-            display: None,
-            estimate: None,
-            timings: FrameTimings::default(),
-        };
-        frame.image = image.map(|read_back| color_image(size, &executed.take(read_back)));
-        if request.read_back {
-            for (slot, read_back) in slots {
-                let image = read_back
-                    .map_or_else(|| ColorImage::black(size), |read_back| color_image(size, &executed.take(read_back)));
-                frame.slots.insert(slot, image);
-            }
-        }
-        frame.display = display.map(|read_back| {
+        let mut taken = |read_back| color_image(size, &executed.take(read_back));
+        let image = image.map(&mut taken);
+        let slots: BTreeMap<Slot, ColorImage> = slots
+            .into_iter()
+            .map(|(slot, read_back)| (slot, read_back.map_or_else(|| ColorImage::black(size), &mut taken)))
+            .collect();
+        let display = display.map(|read_back| {
             executed.take(read_back).chunks_exact(4).map(|word| [word[0], word[1], word[2]]).collect()
         });
         let mut memory_bytes = self.store.memory_by_piece();
-        memory_bytes.insert("scene".to_owned(), data.bytes() + traced.map_or(0, |traced| traced.bytes()));
-        frame.timings = FrameTimings {
+        let scene_bytes = if means.is_some() { 0 } else { traced.map_or(0, |traced| traced.bytes()) };
+        memory_bytes.insert("scene".to_owned(), data.bytes() + scene_bytes);
+        let timings = FrameTimings {
             timing: request.timing,
             gpu_ms: executed.gpu_ms,
-            host_ms: start.elapsed().as_secs_f64() * 1e3,
+            host_ms: 0.0,
             upload_ms,
             pipeline_ms: executed.pipeline_ms,
             passes: executed.passes,
             memory_bytes,
         };
-        Ok((frame, std::mem::take(&mut executed.outgrown)))
+        Ok((Frame { size, image, slots, display, estimate: None, timings }, std::mem::take(&mut executed.outgrown)))
     }
 
     /// The passes of the frame that `request` asks for, and which of them would be skipped and why. Nothing runs.
@@ -161,26 +193,24 @@ impl Renderer {
     /// As [`Renderer::render`], as far as uploading the scene goes.
     pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
         self.check_size(request)?;
-        if self.settings.methods.traces_paths() {
-            return self.describe_paths(scene, request);
+        let mut estimated = GraphDescription::default();
+        let mut means = None;
+        if let Some(entry) = self.estimator(request) {
+            let asked = (entry.samples)(&self.settings).of(request.size, &request.camera);
+            estimated = self.estimates(entry, scene)?.describe(&asked)?;
+            means = Some(Means::unknown(entry.slots, request.size));
         }
         let traced = self.prepare(scene, request)?;
         let data = self.data.as_ref().expect("prepared above");
-        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref() };
+        let prepared = Prepared { scene, data, lights: &self.lights, traced: traced.as_deref(), means: means.as_ref() };
         let mut graph = Graph::new(&mut self.store);
-        let declared = declare(&mut graph, &prepared, &self.settings, request);
-        for image in
-            Slot::ALL.into_iter().filter(|slot| request.slots.contains(slot)).filter_map(|slot| declared.slot(slot))
-        {
-            graph.want(image);
-        }
-        if let Some(image) = declared.image.filter(|_| request.image) {
-            graph.want(image);
-        }
+        let declared = declare(&mut graph, &prepared, &self.settings, request)?;
+        want(&mut graph, &declared, request);
         if let Some(display) = declared.display {
             graph.want_buffer(display);
         }
-        Ok(graph.describe())
+        estimated.append(graph.describe());
+        Ok(estimated)
     }
 
     fn check_size(&self, request: &FrameRequest) -> Result<(), Error> {
@@ -201,28 +231,26 @@ impl Renderer {
         let device = self.store.device().clone();
         let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
-        self.lights = LightSet::update(
-            std::mem::take(&mut self.lights),
-            scene,
-            &data,
-            &self.settings.lights,
-            self.settings.shadow.filter_radius,
-            limit,
-        );
+        let detail = self.settings.lights.detail(self.settings.shadow_map.filter_radius);
+        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, detail, limit);
         self.data = Some(data);
-        let (settings, facts) = (&self.settings, scene.facts());
-        let traces = |slot| request.wants(slot) && sends_rays(settings, &facts, slot);
-        if !facts.lit() || !Slot::ALL.into_iter().any(traces) {
-            return Ok(None);
+        let methods =
+            |wants: &dyn Fn(Slot) -> bool| wanted_methods(&self.settings, &scene.facts(), &self.lights, wants);
+        let (wanted, all) = (inputs_of(&methods(&|slot| request.wants(slot))), inputs_of(&methods(&|_| true)));
+        if all.rays == Rays::None && self.settings.methods.estimator().is_none() {
+            self.release_traced_scene();
         }
-        // Photons and VPLs come from the light views.
-        let to_lights = traces(Slot::Direct);
-        let held = self.traced.as_ref().filter(|held| !to_lights && held.surfaces_key == surfaces_key(scene)).cloned();
+        // Photons and VPLs come from the light views: the surfaces that rays meet stand when a light moves.
+        let held = match wanted.rays {
+            Rays::None => return Ok(None),
+            Rays::ToSurfaces => self.traced.as_ref().filter(|held| held.surfaces_key == surfaces_key(scene)).cloned(),
+            Rays::ToLights => None,
+        };
         held.map_or_else(|| self.traced_scene(scene), Ok).map(Some)
     }
 
     /// The scene as rays meet it, built anew if geometry, materials or lights changed.
-    pub(super) fn traced_scene(&mut self, scene: &Scene) -> Result<Arc<TracedScene>, Error> {
+    fn traced_scene(&mut self, scene: &Scene) -> Result<Arc<TracedScene>, Error> {
         if let Some(held) = self.traced.take().filter(|held| held.key == traced_key(scene)) {
             return Ok(self.traced.insert(held).clone());
         }
@@ -233,10 +261,22 @@ impl Renderer {
 
     fn release_traced_scene(&mut self) {
         self.traced = None;
-        if let Some(paths) = &mut self.paths {
-            paths.release_scene();
+        if let Some(estimates) = &mut self.estimates {
+            estimates.release_scene();
         }
     }
+}
+
+/// The frame's images stay on the device.
+fn want(graph: &mut Graph<'_>, declared: &Declared, request: &FrameRequest) {
+    let slots = request.slots.iter().filter_map(|&slot| declared.slot(slot));
+    for image in slots.chain(declared.image.filter(|_| request.image)) {
+        graph.want(image);
+    }
+}
+
+fn check(settings: &Settings) -> Result<(), Error> {
+    settings.check().map_err(|fault| Error::Settings(fault.to_string()))
 }
 
 impl std::fmt::Debug for Renderer {

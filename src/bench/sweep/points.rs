@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(json!(points[1].values), json!({"preset": "draft", "rsm.vpls": 16, "shadow.filter_radius": 1}));
         assert_eq!(json!(points[11].values), json!({"preset": "high", "rsm.vpls": 256, "shadow.filter_radius": 1}));
         let last = &points[11].settings;
-        assert_eq!((last.rsm.vpls, last.shadow.filter_radius, last.lights.resolution), (256, 1, 64));
+        assert_eq!((last.rsm.vpls, last.shadow_map.filter_radius, last.lights.resolution), (256, 1, 64));
         assert_eq!(last.lights.emitter_samples, 32, "of the preset high");
         assert!(points[12].values.is_empty());
         let ids: HashSet<&str> = points.iter().map(|point| point.id.as_str()).collect();

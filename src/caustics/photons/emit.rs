@@ -99,7 +99,7 @@ pub(crate) fn scatter(
         push: ScatterPush {
             stage: rays.stage as u32,
             capacity: rays.capacity,
-            beams_decide: u32::from(inputs.settings.footprint == PhotonFootprint::Beam),
+            beams_decide: u32::from(inputs.options.footprint == PhotonFootprint::Beam),
         },
     };
     graph

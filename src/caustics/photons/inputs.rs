@@ -1,6 +1,6 @@
 //! What the method takes.
 
-use super::options::PhotonSettings;
+use super::options::PhotonOptions;
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
@@ -21,5 +21,5 @@ pub(crate) struct PhotonInputs<'a> {
     pub(crate) lights: &'a LightViews,
     /// Present where photons are traced through the hierarchy.
     pub(crate) traced: Option<&'a TracedScene>,
-    pub(crate) settings: &'a PhotonSettings,
+    pub(crate) options: &'a PhotonOptions,
 }

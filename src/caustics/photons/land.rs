@@ -39,11 +39,11 @@ pub(crate) fn land(
         capacity: rays.capacity,
         landed_capacity: landed.capacity,
         radius: data.radius as f32,
-        disc_scale: match inputs.settings.footprint {
-            PhotonFootprint::Way => (inputs.settings.radius * data.area.sqrt() / data.radius) as f32,
-            PhotonFootprint::Beam => inputs.settings.radius as f32,
+        disc_scale: match inputs.options.footprint {
+            PhotonFootprint::Way => (inputs.options.radius * data.area.sqrt() / data.radius) as f32,
+            PhotonFootprint::Beam => inputs.options.radius as f32,
         },
-        beams_decide: u32::from(inputs.settings.footprint == PhotonFootprint::Beam),
+        beams_decide: u32::from(inputs.options.footprint == PhotonFootprint::Beam),
     };
     let pass = match scene {
         None => graph.pass(

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
-use super::options::{ListProjection, PhotonSettings};
+use super::options::{ListProjection, PhotonOptions};
 use crate::frame::geometry::DrawView;
 use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::shaders::types;
@@ -41,11 +41,11 @@ impl ListView {
 }
 
 /// The views that the settings ask for.
-pub(crate) fn list_views(data: &SceneData, camera: Option<&types::Camera>, settings: &PhotonSettings) -> Vec<ListView> {
-    let side = f64::from(settings.resolution);
-    match (settings.projection, camera) {
+pub(crate) fn list_views(data: &SceneData, camera: Option<&types::Camera>, options: &PhotonOptions) -> Vec<ListView> {
+    let side = f64::from(options.resolution);
+    match (options.projection, camera) {
         (ListProjection::Camera, Some(camera)) => vec![camera_view(data, camera, side)],
-        _ => axes(settings.views).into_iter().map(|axes| parallel_view(data, axes, side)).collect(),
+        _ => axes(options.views).into_iter().map(|axes| parallel_view(data, axes, side)).collect(),
     }
 }
 

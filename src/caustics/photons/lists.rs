@@ -25,24 +25,24 @@ const COARSEST: u32 = 4;
 
 /// Declares the passes that make the lists.
 pub(crate) fn build(graph: &mut Graph<'_>, inputs: &ListInputs<'_>) -> SceneLists {
-    let settings = inputs.settings;
-    let views = match settings.projection {
+    let options = inputs.options;
+    let views = match options.projection {
         ListProjection::Camera => 1,
-        ListProjection::Scene => settings.views,
+        ListProjection::Scene => options.views,
     };
-    let per_texel = match settings.geometry {
+    let per_texel = match options.geometry {
         PhotonGeometry::Lists => NODES_PER_TEXEL,
         PhotonGeometry::Layers(count) => count,
     };
-    build_from(graph, inputs, (per_texel * views * settings.resolution * settings.resolution) as usize)
+    build_from(graph, inputs, (per_texel * views * options.resolution * options.resolution) as usize)
 }
 
 /// As [`build`], with a pool of so many nodes at first.
 pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: usize) -> SceneLists {
-    let resolution = inputs.settings.resolution;
-    let views = list_views(inputs.data, inputs.camera, inputs.settings);
+    let resolution = inputs.options.resolution;
+    let views = list_views(inputs.data, inputs.camera, inputs.options);
     let texels: Vec<[f32; 4]> = views.iter().flat_map(|view| view.texels.map(|texel| texel.to_array())).collect();
-    let depends = match inputs.settings.projection {
+    let depends = match inputs.options.projection {
         ListProjection::Camera => Dependence::CAMERA,
         ListProjection::Scene => Dependence::GEOMETRY,
     };
@@ -54,7 +54,7 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: u
         view_count,
         views: graph.upload("photons.lists.views", &texels, depends),
         pixels: graph.buffer("photons.lists.pixels", 4 * pixel_count),
-        nodes: match inputs.settings.geometry {
+        nodes: match inputs.options.geometry {
             PhotonGeometry::Lists => graph.growing_buffer("photons.lists.nodes", pool),
             PhotonGeometry::Layers(_) => graph.buffer("photons.lists.nodes", pool),
         },
@@ -63,7 +63,7 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: u
     };
     graph.fill_buffer("caustics/photons/lists-clear", lists.pixels, u32::MAX);
     graph.fill_buffer("caustics/photons/lists-clear-count", lists.node_count, 0);
-    match inputs.settings.geometry {
+    match inputs.options.geometry {
         PhotonGeometry::Lists => {
             append(graph, inputs, &lists, &views);
             graph.grows(lists.nodes, lists.node_count, 0);

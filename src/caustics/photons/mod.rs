@@ -16,7 +16,7 @@ pub(crate) mod lines;
 mod list_views;
 pub(crate) mod lists;
 pub(crate) mod march;
-mod options;
+pub(crate) mod options;
 pub(crate) mod records;
 pub(crate) mod scene_lists;
 pub(crate) mod splat;
@@ -26,16 +26,16 @@ mod tiles;
 mod upsample;
 mod views;
 
+use self::emit::Arrivals;
+pub(crate) use self::inputs::PhotonInputs;
+use self::options::{PhotonOptions, PhotonTracing};
+use self::records::{LandedPhotons, PhotonRays};
+use self::splat::{SplatInputs, splat};
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use emit::Arrivals;
-use records::{LandedPhotons, PhotonRays};
-use splat::{SplatInputs, splat};
-
-pub(crate) use self::inputs::PhotonInputs;
-pub use self::options::{
-    ListProjection, PhotonFootprint, PhotonGeometry, PhotonKernel, PhotonSettings, PhotonSplatting, PhotonTracing,
-};
+use crate::method::{Error, FrameCx, Inputs, Method, Rays};
+use crate::scene::Facts;
+use crate::slot::{CausticPaths, LightPaths, Slot};
 
 /// What every device lets a kernel see of one buffer, bytes.
 const LARGEST_BUFFER: u32 = 1 << 27;
@@ -43,20 +43,53 @@ const LARGEST_BUFFER: u32 = 1 << 27;
 const ARRIVAL_BYTES: u32 = 80;
 const DISC_BYTES: u32 = 48;
 
-/// Declares the method's passes in the order in which they run; returns the slot.
-pub(crate) fn photons(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Option<ImageRef> {
-    if inputs.settings.trace == PhotonTracing::Bvh && inputs.traced.is_none() {
-        graph.skip("caustics/photons", "no scene to trace photons through");
-        return None;
+/// Photons from the specular surfaces that lights see, splatted.
+pub(crate) struct Photons;
+
+impl Method for Photons {
+    const NAME: &'static str = "photons";
+    const SLOT: Slot = Slot::Caustics;
+    type Options = PhotonOptions;
+
+    fn light_paths(options: &PhotonOptions) -> LightPaths {
+        LightPaths { bounces: Some(options.bounces), caustics: CausticPaths::Specular }
     }
-    let traced = trace_all(graph, inputs);
-    let splatted = SplatInputs {
-        buffer: inputs.buffer,
-        settings: inputs.settings,
-        length: inputs.data.radius,
-        tiles_at_once: sums::TILES_AT_ONCE,
-    };
-    Some(splat(graph, &splatted, &traced.landed))
+
+    fn inputs(options: &PhotonOptions) -> Inputs {
+        let rays = if options.trace == PhotonTracing::Bvh { Rays::ToSurfaces } else { Rays::None };
+        Inputs { light_depth: true, light_flux: false, rays }
+    }
+
+    fn skip(options: &PhotonOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.specular, facts.diffuse, options.max.min(options.bounces)) {
+            (false, ..) => Some("no specular or transmissive surface"),
+            (_, false, _) => Some("no diffuse surface"),
+            (.., 0) => Some("no photons asked for"),
+            _ => None,
+        }
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> Result<Option<ImageRef>, Error> {
+        let inputs = PhotonInputs {
+            buffer: cx.frame.surface,
+            data: cx.frame.data,
+            geometry: cx.frame.geometry,
+            facts: cx.frame.facts,
+            camera: cx.frame.camera,
+            set: cx.frame.set,
+            lights: cx.lights(),
+            traced: cx.rays(),
+            options,
+        };
+        let traced = trace_all(cx.graph, &inputs);
+        let splatted = SplatInputs {
+            buffer: inputs.buffer,
+            options,
+            length: inputs.data.radius,
+            tiles_at_once: sums::TILES_AT_ONCE,
+        };
+        Ok(Some(splat(cx.graph, &splatted, &traced.landed)))
+    }
 }
 
 /// Photons where they landed, and what led there.
@@ -78,18 +111,18 @@ pub(crate) struct TracedPhotons {
 /// Photons from the specular surfaces that lights see to where they land. At most `max`, and as many as fit into one buffer if all land at
 /// every bounce.
 pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> TracedPhotons {
-    let settings = inputs.settings;
-    let stages = settings.bounces.max(1) as usize;
-    let capacity = settings
+    let options = inputs.options;
+    let stages = options.bounces.max(1) as usize;
+    let capacity = options
         .max
         .min(LARGEST_BUFFER / ARRIVAL_BYTES)
-        .min(LARGEST_BUFFER / DISC_BYTES / settings.bounces.max(1))
+        .min(LARGEST_BUFFER / DISC_BYTES / options.bounces.max(1))
         .max(1);
     let views = views::specular_views(graph, inputs);
     let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
-    let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * settings.bounces.max(1));
+    let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * options.bounces.max(1));
     let arrivals = Arrivals::declare(graph, capacity);
-    let by_triangles = settings.trace == PhotonTracing::Bvh;
+    let by_triangles = options.trace == PhotonTracing::Bvh;
     let lists = (!by_triangles).then(|| {
         lists::build(
             graph,
@@ -97,7 +130,7 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
                 data: inputs.data,
                 geometry: inputs.geometry,
                 camera: Some(inputs.camera),
-                settings,
+                options,
             },
         )
     });
@@ -111,11 +144,11 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
         emit::scatter(graph, inputs, &choice, arrivals, &rays);
         match (through, lists) {
             (Some((traced, bindings)), _) => bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts),
-            (None, Some(lists)) if settings.trace == PhotonTracing::Lines => {
+            (None, Some(lists)) if options.trace == PhotonTracing::Lines => {
                 lines::trace(graph, &lists, &rays, choice.counts);
             }
             (None, Some(lists)) => march::trace(graph, &lists, &rays, choice.counts),
-            (None, None) => unreachable!("photons() has seen that there is something to trace through"),
+            (None, None) => unreachable!("the hierarchy is there for a method that says it sends rays"),
         }
         land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));
     }

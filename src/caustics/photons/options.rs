@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::method::choices;
+use crate::method::{OptionKind, choices, options};
 
 choices! {
     /// How photons find what they hit.
@@ -87,35 +87,34 @@ impl<'de> Deserialize<'de> for PhotonGeometry {
     }
 }
 
-/// Options of the `photons` caustics method (Quyen 2014, section 3.3).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PhotonSettings {
-    /// Photons that leave the specular surfaces which lights see, at most; 0 to 4194304, of which buffers of 128 MiB hold 1.68 million, or 2.8
-    /// million over `bounces` if that is less. Cost: linear.
-    pub max: u32,
-    /// Specular reflections and refractions of a photon at most; 0 (no caustics) to 16.
-    pub bounces: u32,
+options! {
+    /// Options of the `photons` caustics method (Quyen 2014, section 3.3).
+    PhotonOptions, "photons":
+    /// Photons that leave the specular surfaces which lights see, at most; buffers of 128 MiB hold 1.68 million, or 2.8 million over `bounces` if
+    /// that is less.
+    max: u32 = 38_000, draft = 9_500, paper = 38_146; OptionKind::Integer(0, 1 << 22), "photons", "linear";
+    /// Specular reflections and refractions of a photon at most; 0: no caustics.
+    bounces: u32 = 2, high = 4, paper = 1; OptionKind::Integer(0, 16), "scatterings", "linear";
     /// How photons find what they hit.
-    pub trace: PhotonTracing,
+    trace: PhotonTracing = PhotonTracing::Bvh, paper = PhotonTracing::Lines; OptionKind::Choice(PhotonTracing::NAMES), "", "";
     /// What stands for the scene, for `lines` and `march`.
-    pub geometry: PhotonGeometry,
+    geometry: PhotonGeometry = PhotonGeometry::Lists; OptionKind::Text("lists or layers:1 to layers:16"), "", "";
     /// From where that is drawn.
-    pub projection: ListProjection,
-    /// Views of the projection `scene`, along different axes; 1 to 3. A view is blind to surfaces that it sees edge-on.
-    pub views: u32,
-    /// Side of the lists, texels, and of the image that rays are drawn or marched over; 16 to 1024.
-    pub resolution: u32,
+    projection: ListProjection = ListProjection::Scene, paper = ListProjection::Camera; OptionKind::Choice(ListProjection::NAMES), "", "";
+    /// Views of the projection `scene`, along different axes. A view is blind to surfaces that it sees edge-on.
+    views: u32 = 3; OptionKind::Integer(1, 3), "views", "linear";
+    /// Side of the lists, and of the image that rays are drawn or marched over.
+    resolution: u32 = 128; OptionKind::Integer(16, 1024), "texels", "quadratic for lists, linear for rays";
     /// How photons become irradiance.
-    pub splat: PhotonSplatting,
-    /// Pixels to a side of a texel of that irradiance; 1, 2 or 4. Beyond 1 it is upsampled.
-    pub downscale: u32,
+    splat: PhotonSplatting = PhotonSplatting::Auto, paper = PhotonSplatting::Discs; OptionKind::Choice(PhotonSplatting::NAMES), "", "";
+    /// Pixels to a side of a texel of that irradiance. Beyond 1 it is upsampled.
+    downscale: u32 = 1, draft = 2, paper = 4; OptionKind::OneOf(&[1, 2, 4]), "pixels", "falls quadratically";
     /// How a photon's flux is spread.
-    pub kernel: PhotonKernel,
+    kernel: PhotonKernel = PhotonKernel::Gaussian; OptionKind::Choice(PhotonKernel::NAMES), "", "";
     /// What decides the radius of its disc.
-    pub footprint: PhotonFootprint,
-    /// C₀ of the radius; 0.01 to 100. `way`: h = C₀·√(A/N)·d/(R·√cosθ), A the scene's area in m², N the photons' number, d the way from the
+    footprint: PhotonFootprint = PhotonFootprint::Beam, paper = PhotonFootprint::Way; OptionKind::Choice(PhotonFootprint::NAMES), "", "";
+    /// C₀ of the radius. `way`: h = C₀·√(A/N)·d/(R·√cosθ), A the scene's area in m², N the photons' number, d the way from the
     /// light in metres, R the scene's radius, θ the angle of incidence. `beam`: h = C₀·√2·s along each axis of an
     /// ellipse, s the way to the neighbouring photon, wider by what the lobe spreads.
-    pub radius: f64,
+    radius: f64 = 1.0; OptionKind::Number(0.01, 100.0), "", "quadratic";
 }

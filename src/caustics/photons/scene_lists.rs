@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::list_views::ListView;
-use super::options::PhotonSettings;
+use super::options::PhotonOptions;
 use crate::frame::geometry::{DrawView, Geometry};
 use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -17,7 +17,7 @@ pub(crate) struct ListInputs<'a> {
     pub(crate) geometry: &'a Geometry,
     /// For the projection `camera`.
     pub(crate) camera: Option<&'a types::Camera>,
-    pub(crate) settings: &'a PhotonSettings,
+    pub(crate) options: &'a PhotonOptions,
 }
 
 /// The scene's lists.

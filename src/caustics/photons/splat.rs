@@ -19,7 +19,7 @@ use ash::vk;
 
 use super::discs::discs;
 use super::grid::Grid;
-use super::options::{PhotonFootprint, PhotonKernel, PhotonSettings, PhotonSplatting};
+use super::options::{PhotonFootprint, PhotonKernel, PhotonOptions, PhotonSplatting};
 use super::records::LandedPhotons;
 use super::splat_tiles::{PART_PHOTONS, STATE_WORDS, Splat};
 use super::tiles::tiles;
@@ -34,7 +34,7 @@ const TOLERANCE: f64 = 1e-3;
 /// What splatting takes.
 pub(crate) struct SplatInputs<'a> {
     pub(crate) buffer: &'a GBuffer,
-    pub(crate) settings: &'a PhotonSettings,
+    pub(crate) options: &'a PhotonOptions,
     /// Radius of the scene, metres.
     pub(crate) length: f64,
     /// Tiles whose sums are kept at a time, [`super::sums::TILES_AT_ONCE`].
@@ -43,8 +43,8 @@ pub(crate) struct SplatInputs<'a> {
 
 /// Declares the passes; returns the slot.
 pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &LandedPhotons) -> ImageRef {
-    let (buffer, settings) = (inputs.buffer, inputs.settings);
-    let downscale = settings.downscale.max(1);
+    let (buffer, options) = (inputs.buffer, inputs.options);
+    let downscale = options.downscale.max(1);
     let slot = graph.image("caustics", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
     graph.clear_image("caustics/photons/clear", slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
     let grid = Grid::upload(graph, buffer.size.map(|side| side.div_ceil(downscale)));
@@ -59,8 +59,8 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
     let shared = Splat {
         buffer,
         landed: *landed,
-        gaussian: u32::from(settings.kernel == PhotonKernel::Gaussian),
-        elliptic: u32::from(settings.footprint == PhotonFootprint::Beam),
+        gaussian: u32::from(options.kernel == PhotonKernel::Gaussian),
+        elliptic: u32::from(options.footprint == PhotonFootprint::Beam),
         tolerance: (inputs.length * TOLERANCE) as f32,
         image_size: buffer.size.map(u32::cast_signed),
         downscale: downscale.cast_signed(),
@@ -73,12 +73,12 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
         crowded: graph.buffer("photons.crowded", tile_count),
         tile_peaks: graph.buffer("photons.tile_peaks", tile_count),
         state: graph.buffer("photons.splat_state", STATE_WORDS),
-        may_crowd: settings.splat != PhotonSplatting::Discs && landed.capacity > PART_PHOTONS,
+        may_crowd: options.splat != PhotonSplatting::Discs && landed.capacity > PART_PHOTONS,
         tiles_at_once: inputs.tiles_at_once,
         result,
     };
     shared.declare_start(graph);
-    match settings.splat {
+    match options.splat {
         PhotonSplatting::Discs => discs(graph, &shared),
         PhotonSplatting::Tiles | PhotonSplatting::Auto => tiles(graph, &shared),
     }

@@ -9,40 +9,63 @@
 //! constant (glsl/lib/vpl.glsl). Light that is blocked on its way from y to x is counted all the same: that is the
 //! method's error, besides everything beyond one bounce.
 
-mod options;
+pub(crate) mod options;
 
 use ash::vk;
 
-use crate::frame::gbuffer::GBuffer;
-use crate::frame::light_set::LightSet;
-use crate::frame::light_views::{LightViews, ReflectiveViews};
+use self::options::RsmOptions;
+use crate::graph::Dependence;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::graph::{Dependence, Graph};
+use crate::method::{Error, FrameCx, Inputs, Method};
+use crate::scene::Facts;
 use crate::shaders::rsm::{Gather, GatherPush, Scan, ScanPush, TileFlux, TileFluxPush, Vpls, VplsPush};
-
-pub use self::options::RsmSettings;
+use crate::slot::{LightPaths, Slot};
 
 /// Most work groups of the tile pass; each then takes several tiles.
 const MOST_TILE_GROUPS: u32 = 32768;
 
+/// Reflective shadow maps: VPLs gathered at every pixel, without visibility.
+pub(crate) struct Rsm;
+
+impl Method for Rsm {
+    const NAME: &'static str = "rsm";
+    const SLOT: Slot = Slot::Diffuse;
+    type Options = RsmOptions;
+
+    fn light_paths(_: &RsmOptions) -> LightPaths {
+        LightPaths::up_to(1)
+    }
+
+    fn inputs(_: &RsmOptions) -> Inputs {
+        Inputs { light_depth: true, light_flux: true, ..Inputs::default() }
+    }
+
+    fn skip(options: &RsmOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.diffuse, options.vpls) {
+            (false, _) => Some("no diffuse surface"),
+            (_, 0) => Some("no VPLs asked for"),
+            _ => None,
+        }
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Result<Option<ImageRef>, Error> {
+        Ok(Some(rsm(cx, options).diffuse))
+    }
+}
+
 /// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
-pub(crate) struct Rsm {
+pub(crate) struct Made {
     pub(crate) diffuse: ImageRef,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) vpls: BufferRef<[f32; 4]>,
 }
 
 /// Declares the method's passes in the order in which they run.
-pub(crate) fn rsm(
-    graph: &mut Graph<'_>,
-    buffer: &GBuffer,
-    set: &LightSet,
-    lights: &LightViews,
-    reflective: ReflectiveViews,
-    settings: &RsmSettings,
-) -> Rsm {
+pub(crate) fn rsm(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Made {
+    let (buffer, set, lights, reflective) = (cx.frame.surface, cx.frame.set, cx.lights(), cx.reflective());
+    let graph = &mut *cx.graph;
     let tile_count = set.atlas.tiles.len() as u32;
-    let vpl_count = settings.vpls;
+    let vpl_count = options.vpls;
     let tiles = graph.upload("rsm.tiles", &set.atlas.tiles, Dependence::LIGHTS);
     let tile_fluxes = graph.buffer::<[f32; 4]>("rsm.tile_fluxes", tile_count as usize);
     let flux_prefix = graph.buffer::<[f32; 4]>("rsm.flux_prefix", tile_count as usize + 1);
@@ -93,5 +116,5 @@ pub(crate) fn rsm(
     let [width, height] = buffer.size;
     let terms = u64::from(width) * u64::from(height) * u64::from(vpl_count);
     graph.pass("diffuse/rsm/gather", pass).note("VPL terms", terms).groups([width.div_ceil(16), height.div_ceil(8), 1]);
-    Rsm { diffuse, vpls }
+    Made { diffuse, vpls }
 }

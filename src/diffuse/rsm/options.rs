@@ -1,11 +1,10 @@
 //! Options of `rsm`.
 
-use serde::{Deserialize, Serialize};
+use crate::method::{OptionKind, options};
 
-/// Options of the `rsm` diffuse method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RsmSettings {
-    /// VPLs gathered at every pixel, shared among the lights by reflected flux; 0 to 32768. Cost: linear.
-    pub vpls: u32,
+options! {
+    /// Options of the `rsm` diffuse method. Preset `paper`: Dachsbacher & Stamminger 2005, section 5.
+    RsmOptions, "rsm":
+    /// VPLs gathered at every pixel, shared among the lights by reflected flux.
+    vpls: u32 = 256, draft = 64, high = 1024, paper = 400; OptionKind::Integer(0, 32768), "VPLs", "linear";
 }

@@ -1,6 +1,6 @@
 //! What the method takes.
 
-use super::options::VplSettings;
+use super::options::VplOptions;
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
@@ -19,7 +19,7 @@ pub(crate) struct VplInputs<'a> {
     pub(crate) reflective: ReflectiveViews,
     /// Present where rays are traced for visibility or further bounces.
     pub(crate) traced: Option<&'a TracedScene>,
-    pub(crate) settings: &'a VplSettings,
+    pub(crate) options: &'a VplOptions,
 }
 
 /// Number of VPLs in a buffer of two texels each.

@@ -1,6 +1,6 @@
 //! From irradiance at regions to radiance at pixels, coarse to fine.
 
-use super::options::VplSettings;
+use super::options::VplOptions;
 use super::pyramid::{Pyramid, signed};
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
@@ -11,13 +11,13 @@ use crate::shaders::vpl::{Interpolate, InterpolatePush, Resolve, ResolvePush};
 pub(crate) fn interpolate(
     graph: &mut Graph<'_>,
     buffer: &GBuffer,
-    settings: &VplSettings,
+    options: &VplOptions,
     pyramid: &Pyramid,
     irradiance: ImageRef,
     diffuse: ImageRef,
 ) {
     let size = buffer.size;
-    let (depth_threshold, normal_threshold) = (settings.depth_threshold as f32, settings.normal_threshold as f32);
+    let (depth_threshold, normal_threshold) = (options.depth_threshold as f32, options.normal_threshold as f32);
     let planes_of_level = |level: u32| pyramid.planes.mip(level - 1).sampled();
     for level in (1..pyramid.level_count - 1).rev() {
         let pass = Interpolate {

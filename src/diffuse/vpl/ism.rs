@@ -7,7 +7,7 @@
 use ash::vk;
 
 use super::inputs::vpl_count;
-use super::options::VplSettings;
+use super::options::VplOptions;
 use crate::frame::geometry::Geometry;
 use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -55,8 +55,8 @@ struct SurfacePoints {
 }
 
 /// Side of the maps of so many VPLs, texels.
-fn resolution_for(vpl_count: u32, settings: &VplSettings) -> u32 {
-    settings.ism_resolution.min((MOST_TEXELS / vpl_count.max(1)).isqrt()).max(1)
+fn resolution_for(vpl_count: u32, options: &VplOptions) -> u32 {
+    options.ism_resolution.min((MOST_TEXELS / vpl_count.max(1)).isqrt()).max(1)
 }
 
 /// Declares the passes that make a map for each of `vpls` (glsl/lib/vpl.glsl).
@@ -65,11 +65,11 @@ pub(crate) fn imperfect_shadow_maps(
     data: &SceneData,
     geometry: &Geometry,
     vpls: BufferRef<[f32; 4]>,
-    settings: &VplSettings,
+    options: &VplOptions,
 ) -> ImperfectShadowMaps {
     let vpl_count = vpl_count(vpls);
-    let surfaces = surface_points(graph, data, geometry, settings.ism_points);
-    let side = resolution_for(vpl_count, settings);
+    let surfaces = surface_points(graph, data, geometry, options.ism_points);
+    let side = resolution_for(vpl_count, options);
     let count = |side: u32| vpl_count as usize * side as usize * side as usize;
     let drawn = graph.buffer::<u32>("ism.drawn", count(side));
     graph.fill_buffer("diffuse/vpl/ism-clear", drawn, 0);

@@ -4,7 +4,7 @@ mod gather;
 mod inputs;
 pub(crate) mod interpolate;
 mod ism;
-mod options;
+pub(crate) mod options;
 mod paths;
 pub(crate) mod pyramid;
 pub(crate) mod regions;
@@ -13,15 +13,48 @@ mod visibility;
 
 use ash::vk;
 
-use crate::graph::Graph;
+use self::inputs::VplInputs;
+use self::options::{VplOptions, VplShading, VplVisibility};
+use self::visibility::{Rays, Visibility};
 use crate::graph::bindings::{BufferRef, ImageRef};
-use visibility::{Rays, Visibility};
+use crate::method::{Error, FrameCx, Inputs, Method, Rays as RaysTaken};
+use crate::scene::Facts;
+use crate::slot::{LightPaths, Slot};
 
-pub(crate) use self::inputs::VplInputs;
-pub use self::options::{VplSettings, VplShading, VplVisibility};
+/// Virtual point lights, gathered at regions of several sizes.
+pub(crate) struct Vpl;
+
+impl Method for Vpl {
+    const NAME: &'static str = "vpl";
+    const SLOT: Slot = Slot::Diffuse;
+    type Options = VplOptions;
+
+    fn light_paths(options: &VplOptions) -> LightPaths {
+        LightPaths::up_to(options.bounces)
+    }
+
+    fn inputs(options: &VplOptions) -> Inputs {
+        let traces = options.visibility == VplVisibility::Traced || options.bounces > 1;
+        let rays = if traces { RaysTaken::ToSurfaces } else { RaysTaken::None };
+        Inputs { light_depth: true, light_flux: true, rays }
+    }
+
+    fn skip(options: &VplOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.diffuse, options.bounces.min(options.count)) {
+            (false, _) => Some("no diffuse surface"),
+            (_, 0) => Some("no VPLs asked for"),
+            _ => None,
+        }
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Result<Option<ImageRef>, Error> {
+        Ok(Some(vpl(cx, options).diffuse))
+    }
+}
+
 
 /// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
-pub(crate) struct Vpl {
+pub(crate) struct Made {
     pub(crate) diffuse: ImageRef,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) vpls: BufferRef<[f32; 4]>,
@@ -34,15 +67,26 @@ pub(crate) struct Vpl {
 }
 
 /// Declares the method's passes in the order in which they run.
-pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
+pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
+    let inputs = &VplInputs {
+        buffer: cx.frame.surface,
+        data: cx.frame.data,
+        geometry: cx.frame.geometry,
+        set: cx.frame.set,
+        lights: cx.lights(),
+        reflective: cx.reflective(),
+        traced: cx.rays(),
+        options,
+    };
+    let graph = &mut *cx.graph;
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
     let first_bounce = sample::sample(graph, inputs);
     let rays = Rays::new(graph, inputs, first_bounce);
     let vpls = paths::with_bounces(graph, inputs, &rays, first_bounce);
     let visibility = Visibility::new(graph, inputs, rays, vpls);
-    let mut made = Vpl { diffuse, vpls, invocations: None, list: None };
-    let level_count = pyramid::level_count(inputs.buffer.size, inputs.settings.levels);
-    let shading = match inputs.settings.shading {
+    let mut made = Made { diffuse, vpls, invocations: None, list: None };
+    let level_count = pyramid::level_count(inputs.buffer.size, inputs.options.levels);
+    let shading = match inputs.options.shading {
         // An image so wide that its levels do not fit beside each other is gathered pixel by pixel.
         _ if level_count == 1 || regions::flattened_size(inputs.buffer.size)[0] > graph.longest_side() => {
             VplShading::Pixels
@@ -56,7 +100,7 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         return made;
     }
     let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
-    let pyramid = pyramid::pyramid(graph, inputs.buffer, inputs.settings, level_count, listed);
+    let pyramid = pyramid::pyramid(graph, inputs.buffer, inputs.options, level_count, listed);
     made.list = pyramid.list;
     let irradiance = if let Some(list) = pyramid.list {
         gather::gather_list(graph, inputs, vpls, &visibility, &pyramid, list)
@@ -66,6 +110,6 @@ pub(crate) fn vpl(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Vpl {
         made.invocations = Some(invocations);
         irradiance
     };
-    interpolate::interpolate(graph, inputs.buffer, inputs.settings, &pyramid, irradiance, diffuse);
+    interpolate::interpolate(graph, inputs.buffer, inputs.options, &pyramid, irradiance, diffuse);
     made
 }

@@ -32,8 +32,8 @@ pub(super) fn with_bounces(
     rays: &Rays,
     first_bounce: BufferRef<[f32; 4]>,
 ) -> BufferRef<[f32; 4]> {
-    let Some(traced) = inputs.traced.filter(|_| inputs.settings.bounces > 1) else { return first_bounce };
-    let counts = counts(inputs.settings.count, inputs.settings.bounces);
+    let Some(traced) = inputs.traced.filter(|_| inputs.options.bounces > 1) else { return first_bounce };
+    let counts = counts(inputs.options.count, inputs.options.bounces);
     let all: u32 = counts.iter().sum();
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
     let texel_count = 2 * counts[0];

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::options::VplSettings;
+use super::options::VplOptions;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
@@ -36,12 +36,12 @@ pub(crate) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
 pub(crate) fn pyramid(
     graph: &mut Graph<'_>,
     buffer: &GBuffer,
-    settings: &VplSettings,
+    options: &VplOptions,
     level_count: u32,
     group_regions: Option<u32>,
 ) -> Pyramid {
     let size = buffer.size;
-    let thresholds = (settings.depth_threshold as f32, settings.normal_threshold as f32);
+    let thresholds = (options.depth_threshold as f32, options.normal_threshold as f32);
     let (depth_threshold, normal_threshold) = thresholds;
     let info = |format| ImageInfo {
         format,

@@ -16,7 +16,7 @@ const BLOCKS_PER_TILE: u32 = 4;
 pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef<[f32; 4]> {
     let VplInputs { set, lights, reflective, .. } = inputs;
     let (tile_count, view_count) = (set.atlas.tiles.len() as u32, set.atlas.views.len() as u32);
-    let vpl_count = inputs.settings.count;
+    let vpl_count = inputs.options.count;
     let block_grid = set.atlas.size.map(|side| side.div_ceil(BLOCK_SIDE).max(1));
     let tiles = graph.upload("vpl.tiles", &set.atlas.tiles, Dependence::LIGHTS);
     let blocks = graph.image("vpl.blocks", vk::Format::R32G32B32A32_SFLOAT, block_grid);

@@ -102,10 +102,10 @@ impl Visibility {
         vpls: BufferRef<[f32; 4]>,
     ) -> Visibility {
         let none = vpls.texels(vk::Format::R32G32B32A32_SFLOAT);
-        let (kind, ism_resolution, ism_maps) = match inputs.settings.visibility {
+        let (kind, ism_resolution, ism_maps) = match inputs.options.visibility {
             VplVisibility::None => (NONE, 1, none),
             VplVisibility::Ism => {
-                let maps = imperfect_shadow_maps(graph, inputs.data, inputs.geometry, vpls, inputs.settings);
+                let maps = imperfect_shadow_maps(graph, inputs.data, inputs.geometry, vpls, inputs.options);
                 (ISM, maps.resolution, maps.texels())
             }
             VplVisibility::Traced => (TRACED, 1, none),

@@ -1,42 +1,57 @@
 //! The `direct` slot by filtered shadow maps.
 
-mod options;
+pub(crate) mod options;
 
 use ash::vk;
 
-use crate::frame::gbuffer::GBuffer;
-use crate::frame::light_views::LightViews;
-use crate::graph::Graph;
+use self::options::ShadowOptions;
 use crate::graph::bindings::ImageRef;
-use crate::shaders::direct::{ShadowMap, ShadowMapPush};
+use crate::method::{Error, FrameCx, Inputs, Method};
+use crate::scene::Facts;
+use crate::shaders::direct::{ShadowMap as Pass, ShadowMapPush};
+use crate::slot::{LightPaths, Slot};
 
-pub use self::options::ShadowSettings;
+/// Filtered, normal-offset shadow maps.
+pub(crate) struct ShadowMap;
 
-/// Declares the pass; returns the slot's radiance.
-pub(crate) fn shadow_map(
-    graph: &mut Graph<'_>,
-    buffer: &GBuffer,
-    lights: &LightViews,
-    settings: &ShadowSettings,
-) -> ImageRef {
-    let direct = graph.image("direct", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
-    let (specular, has_specular) = buffer.specular();
-    let pass = ShadowMap {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        specular: specular.sampled(),
-        lights: lights.lights.clone(),
-        views: lights.views.clone(),
-        light_depth: lights.depth.sampled(),
-        direct: direct.write(),
-        push: ShadowMapPush {
-            light_count: lights.light_count,
-            has_specular,
-            normal_offset: settings.normal_offset as f32,
-            filter_radius: i32::try_from(settings.filter_radius).unwrap_or(0),
-        },
-    };
-    graph.pass("direct/shadow-map", pass).note("lights", u64::from(lights.light_count)).pixels(buffer.size);
-    direct
+impl Method for ShadowMap {
+    const NAME: &'static str = "shadow-map";
+    const SLOT: Slot = Slot::Direct;
+    type Options = ShadowOptions;
+
+    fn light_paths(_: &ShadowOptions) -> LightPaths {
+        LightPaths::up_to(0)
+    }
+
+    fn inputs(_: &ShadowOptions) -> Inputs {
+        Inputs { light_depth: true, ..Inputs::default() }
+    }
+
+    fn skip(_: &ShadowOptions, _: &Facts) -> Option<&'static str> {
+        None
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &ShadowOptions) -> Result<Option<ImageRef>, Error> {
+        let (buffer, lights) = (cx.frame.surface, cx.lights());
+        let direct = cx.graph.image("direct", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
+        let (specular, has_specular) = buffer.specular();
+        let pass = Pass {
+            camera: buffer.camera.clone(),
+            depth: buffer.depth.sampled(),
+            surface: buffer.surface.sampled(),
+            specular: specular.sampled(),
+            lights: lights.lights.clone(),
+            views: lights.views.clone(),
+            light_depth: lights.depth.sampled(),
+            direct: direct.write(),
+            push: ShadowMapPush {
+                light_count: lights.light_count,
+                has_specular,
+                normal_offset: options.normal_offset as f32,
+                filter_radius: i32::try_from(options.filter_radius).unwrap_or(0),
+            },
+        };
+        cx.graph.pass("direct/shadow-map", pass).note("lights", u64::from(lights.light_count)).pixels(buffer.size);
+        Ok(Some(direct))
+    }
 }

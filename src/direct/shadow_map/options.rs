@@ -1,13 +1,12 @@
 //! Options of `shadow-map`.
 
-use serde::{Deserialize, Serialize};
+use crate::method::{OptionKind, options};
 
-/// Shadow-map filtering of the `shadow-map` direct method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ShadowSettings {
-    /// Half width of the percentage-closer filter, in texels of the light view; 0 (one bilinear tap) to 4.
-    pub filter_radius: u32,
-    /// Offset of the receiver along its normal, in texel widths at the receiver; 0 to 16.
-    pub normal_offset: f64,
+options! {
+    /// Shadow-map filtering of the `shadow-map` direct method.
+    ShadowOptions, "shadow":
+    /// Half width of the percentage-closer filter, in texels of the light view; 0 is one bilinear tap.
+    filter_radius: u32 = 1, high = 2; OptionKind::Integer(0, 4), "texels", "quadratic";
+    /// Offset of the receiver along its normal, in texel widths at the receiver.
+    normal_offset: f64 = 0.05; OptionKind::Number(0.0, 16.0), "texels", "";
 }

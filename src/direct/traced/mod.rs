@@ -5,48 +5,65 @@
 //! sky is estimated from the same directions. Each kind of light has a kernel of its own, which adds to what the one before it found: kernels stay
 //! small, and a scene runs only those that it has lights for.
 
-mod options;
+pub(crate) mod options;
 
 use ash::vk;
-use glam::DVec3;
 
+use self::options::TracedOptions;
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::rays::{TracedBindings, TracedScene};
 use crate::graph::Graph;
 use crate::graph::bindings::{ImageRef, SampledImage};
+use crate::method::{Error, FrameCx, Inputs, Method, Rays};
+use crate::scene::Facts;
 use crate::shaders::direct::{Directions, DirectionsPush, Emitters, EmittersPush, Punctual, PunctualPush};
+use crate::slot::{LightPaths, Slot};
 
-pub use self::options::TracedSettings;
+/// Rays to the lights: exact shadows; noise where light comes from surfaces or the sky.
+pub(crate) struct Traced;
 
-/// Declares the passes that the scene's lights need; returns the slot's radiance, or nothing if that is none. `origin`: of the
-/// G-buffer's render space.
-pub(crate) fn traced(
-    graph: &mut Graph<'_>,
-    buffer: &GBuffer,
-    scene: &TracedScene,
-    origin: DVec3,
-    settings: &TracedSettings,
-) -> Option<ImageRef> {
-    let emissive = scene.emissive_count > 0;
-    let sky = scene.sky.iter().any(|&channel| channel > 0.0);
-    let wanted = |reason: Option<&'static str>| reason.or((settings.samples == 0).then_some("no samples asked for"));
-    let shift = (origin - scene.origin).as_vec3().to_array();
-    let bindings = scene.import(graph);
-    let frame = TracedFrame { buffer, scene, bindings, shift, samples: settings.samples };
-    let mut direct = None;
-    match (scene.punctual_count == 0).then_some("no punctual light") {
-        Some(reason) => graph.skip("direct/punctual", reason),
-        None => direct = Some(frame.punctual(graph, direct)),
+impl Method for Traced {
+    const NAME: &'static str = "traced";
+    const SLOT: Slot = Slot::Direct;
+    type Options = TracedOptions;
+
+    fn light_paths(_: &TracedOptions) -> LightPaths {
+        LightPaths::up_to(0)
     }
-    match wanted((!emissive).then_some("no emissive surface")) {
-        Some(reason) => graph.skip("direct/emitters", reason),
-        None => direct = Some(frame.emitters(graph, direct)),
+
+    fn inputs(_: &TracedOptions) -> Inputs {
+        Inputs { rays: Rays::ToLights, ..Inputs::default() }
     }
-    match wanted((!sky && !emissive).then_some("no sky, no emissive surface")) {
-        Some(reason) => graph.skip("direct/directions", reason),
-        None => direct = Some(frame.directions(graph, direct)),
+
+    fn skip(_: &TracedOptions, _: &Facts) -> Option<&'static str> {
+        None
     }
-    direct
+
+    /// The passes that the scene's lights need.
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &TracedOptions) -> Result<Option<ImageRef>, Error> {
+        let Some(scene) = cx.rays() else { return Ok(None) };
+        let emissive = scene.emissive_count > 0;
+        let sky = scene.sky.iter().any(|&channel| channel > 0.0);
+        let wanted = |reason: Option<&'static str>| reason.or((options.samples == 0).then_some("no samples asked for"));
+        let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
+        let graph = &mut *cx.graph;
+        let bindings = scene.import(graph);
+        let frame = TracedFrame { buffer: cx.frame.surface, scene, bindings, shift, samples: options.samples };
+        let mut direct = None;
+        match (scene.punctual_count == 0).then_some("no punctual light") {
+            Some(reason) => graph.skip("direct/punctual", reason),
+            None => direct = Some(frame.punctual(graph, direct)),
+        }
+        match wanted((!emissive).then_some("no emissive surface")) {
+            Some(reason) => graph.skip("direct/emitters", reason),
+            None => direct = Some(frame.emitters(graph, direct)),
+        }
+        match wanted((!sky && !emissive).then_some("no sky, no emissive surface")) {
+            Some(reason) => graph.skip("direct/directions", reason),
+            None => direct = Some(frame.directions(graph, direct)),
+        }
+        Ok(direct)
+    }
 }
 
 /// What the passes share.

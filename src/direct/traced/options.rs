@@ -1,12 +1,11 @@
 //! Options of `traced`.
 
-use serde::{Deserialize, Serialize};
+use crate::method::{OptionKind, options};
 
-/// Options of the `traced` direct method, where no paths are traced.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TracedSettings {
-    /// Points of emissive surfaces, and as many directions of the sky, that each pixel sends a ray to; 0 (neither gives light) to
-    /// 1024. Cost: linear. Noise: at most its inverse square root. Punctual lights take one ray each whatever this says.
-    pub samples: u32,
+options! {
+    /// Options of the `traced` direct method, where no paths are traced.
+    TracedOptions, "traced":
+    /// Points of emissive surfaces, and as many directions of the sky, that each pixel sends a ray to; with 0 neither gives light. Noise: at most
+    /// its inverse square root. Punctual lights take one ray each whatever this says.
+    samples: u32 = 4, draft = 1, high = 16; OptionKind::Integer(0, 1024), "rays", "linear";
 }

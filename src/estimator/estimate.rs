@@ -1,0 +1,90 @@
+//! What an estimator is: whoever can add up samples of several slots of a picture.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::cost::TraceCost;
+use super::sums::SlotSums;
+use super::view::EstimateRequest;
+use crate::frame::rays::TracedScene;
+use crate::graph::{GraphDescription, PassTiming, Timing};
+use crate::method::Options;
+use crate::scene::CameraView;
+use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
+use crate::vulkan::{Device, VulkanError};
+
+/// One way to fill several slots in one run, by unbiased or consistent sums of samples.
+pub(crate) trait Estimator {
+    /// The name on the command line.
+    const NAME: &'static str;
+    const SLOTS: &'static [Slot];
+    type Options: Options;
+
+    /// Which light it can find: what it is compared with.
+    fn light_paths(options: &Self::Options) -> LightPaths;
+
+    /// Where in a pixel it samples light.
+    fn filter(options: &Self::Options) -> PixelFilter;
+
+    /// What a frame asks of it.
+    fn samples(options: &Self::Options) -> Samples;
+
+    /// One that has no scene yet.
+    ///
+    /// # Errors
+    /// Exhausted device memory.
+    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>;
+}
+
+/// What is asked of an estimator, whatever the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Samples {
+    /// Of every pixel.
+    pub(crate) spp: u32,
+    pub(crate) bounces: Option<u32>,
+    pub(crate) caustics: CausticPaths,
+    pub(crate) filter: PixelFilter,
+    pub(crate) seed: u32,
+}
+
+impl Samples {
+    /// The same of a picture.
+    pub(crate) fn of(self, size: [u32; 2], camera: &CameraView) -> EstimateRequest {
+        let Samples { spp: _, bounces, caustics, filter, seed } = self;
+        EstimateRequest { size, camera: camera.clone(), bounces, caustics, filter, seed }
+    }
+}
+
+/// An estimator at work on a device.
+pub(crate) trait Estimating {
+    /// Works on this scene from now on.
+    fn set_scene(&mut self, scene: Arc<TracedScene>);
+
+    /// Gives its memory back, until a scene is set again.
+    fn release_scene(&mut self);
+
+    /// How the passes to come are timed.
+    fn set_timing(&mut self, timing: Timing);
+
+    /// The sums over samples `first .. first + count` of half `half`, 0 or 1, of every pixel.
+    ///
+    /// # Errors
+    /// Exhausted device memory, a lost device.
+    fn add_up(&mut self, request: &EstimateRequest, half: u32, first: u32, count: u32)
+    -> Result<SlotSums, VulkanError>;
+
+    /// What was spent since this was last asked.
+    fn take_cost(&mut self) -> TraceCost;
+
+    /// The most device memory that was held at a time, bytes, by piece.
+    fn memory_bytes(&self) -> BTreeMap<String, u64>;
+
+    /// The passes of a frame in which nothing changed.
+    fn unchanged_passes(&self) -> Vec<PassTiming>;
+
+    /// The passes that some samples take.
+    ///
+    /// # Errors
+    /// Exhausted device memory.
+    fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError>;
+}

@@ -1,0 +1,24 @@
+//! What all methods share of a frame.
+
+use super::gbuffer::GBuffer;
+use super::geometry::Geometry;
+use super::light_set::LightSet;
+use super::light_views::{LightViews, ReflectiveViews};
+use super::rays::TracedScene;
+use super::scene_data::SceneData;
+use crate::scene::Facts;
+use crate::shaders::types;
+
+/// The scene on the device, the first visible surfaces, the lights.
+pub(crate) struct FrameInputs<'f> {
+    pub(crate) data: &'f SceneData,
+    pub(crate) facts: &'f Facts,
+    pub(crate) geometry: &'f Geometry,
+    pub(crate) camera: &'f types::Camera,
+    pub(crate) surface: &'f GBuffer,
+    pub(crate) set: &'f LightSet,
+    /// Present where some method takes them and something shines.
+    pub(crate) lights: Option<LightViews>,
+    pub(crate) reflective: Option<ReflectiveViews>,
+    pub(crate) traced: Option<&'f TracedScene>,
+}

@@ -1,0 +1,71 @@
+//! What a method declares its passes with: the graph, and what all methods share of a frame.
+
+use crate::frame::inputs::FrameInputs;
+use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::frame::rays::TracedScene;
+use crate::graph::Graph;
+
+/// What a method takes of a frame, besides the G-buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Inputs {
+    /// Light views with their depth.
+    pub(crate) light_depth: bool,
+    /// What their texels reflect.
+    pub(crate) light_flux: bool,
+    pub(crate) rays: Rays,
+}
+
+impl Inputs {
+    /// What two methods take together.
+    pub(crate) fn and(self, other: Inputs) -> Inputs {
+        Inputs {
+            light_depth: self.light_depth || other.light_depth,
+            light_flux: self.light_flux || other.light_flux,
+            rays: self.rays.max(other.rays),
+        }
+    }
+
+    pub(crate) fn light_views(self) -> bool {
+        self.light_depth || self.light_flux
+    }
+}
+
+/// What rays are sent to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Rays {
+    #[default]
+    None,
+    /// Surfaces alone: they stand when a light moves.
+    ToSurfaces,
+    /// Lights too.
+    ToLights,
+}
+
+/// A frame while a method declares its passes. What is shared was made before, and is read by `&self`: it outlives the borrow.
+pub(crate) struct FrameCx<'f, 's> {
+    pub(crate) graph: &'f mut Graph<'s>,
+    pub(crate) frame: &'f FrameInputs<'f>,
+    /// What the method said it takes.
+    inputs: Inputs,
+}
+
+impl<'f, 's> FrameCx<'f, 's> {
+    pub(crate) fn new(graph: &'f mut Graph<'s>, frame: &'f FrameInputs<'f>, inputs: Inputs) -> FrameCx<'f, 's> {
+        FrameCx { graph, frame, inputs }
+    }
+
+    /// The scene as rays meet it, for a method that sends rays.
+    pub(crate) fn rays(&self) -> Option<&'f TracedScene> {
+        self.frame.traced.filter(|_| self.inputs.rays != Rays::None)
+    }
+
+    /// The views from the lights, for a method that takes them.
+    pub(crate) fn lights(&self) -> &'f LightViews {
+        self.frame.lights.as_ref().expect("made for every method that takes them, where something shines")
+    }
+
+    /// What their texels reflect, for a method that takes it.
+    pub(crate) fn reflective(&self) -> ReflectiveViews {
+        self.frame.reflective.expect("made for every method that takes them, where something shines")
+    }
+}

@@ -1,0 +1,150 @@
+//! All methods as data: what the renderer asks of whichever is chosen. Made from the list in `method/`.
+
+use std::sync::Arc;
+
+use super::choices::{DirectMethod, Methods};
+use super::settings::Settings;
+use crate::estimator::{Estimating, Estimator, Samples};
+use crate::graph::bindings::ImageRef;
+use crate::method::{Error, FrameCx, Inputs, Method, for_all_methods};
+use crate::scene::Facts;
+use crate::slot::{LightPaths, PixelFilter, Slot};
+use crate::vulkan::{Device, VulkanError};
+
+/// A method, with its options taken from all settings.
+pub(crate) struct MethodEntry {
+    pub(crate) slot: Slot,
+    pub(crate) name: &'static str,
+    pub(crate) light_paths: fn(&Settings) -> LightPaths,
+    pub(crate) inputs: fn(&Settings) -> Inputs,
+    pub(crate) skip: fn(&Settings, &Facts) -> Option<&'static str>,
+    pub(crate) declare: fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>,
+}
+
+/// An estimator, likewise.
+pub(crate) struct EstimatorEntry {
+    pub(crate) name: &'static str,
+    pub(crate) slots: &'static [Slot],
+    pub(crate) light_paths: fn(&Settings) -> LightPaths,
+    pub(crate) filter: fn(&Settings) -> PixelFilter,
+    pub(crate) samples: fn(&Settings) -> Samples,
+    pub(crate) open: fn(&Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>,
+}
+
+/// What fills a slot.
+#[derive(Clone, Copy)]
+pub(crate) enum Filler {
+    Method(&'static MethodEntry),
+    Estimator(&'static EstimatorEntry),
+}
+
+macro_rules! entries {
+    ($slot:ident { $($module:ident => $method:ident($options:ident),)* }) => {
+        &[$(MethodEntry {
+            slot: <crate::$slot::$module::$method as Method>::SLOT,
+            name: <crate::$slot::$module::$method as Method>::NAME,
+            light_paths: |settings| <crate::$slot::$module::$method as Method>::light_paths(&settings.$module),
+            inputs: |settings| <crate::$slot::$module::$method as Method>::inputs(&settings.$module),
+            skip: |settings, facts| <crate::$slot::$module::$method as Method>::skip(&settings.$module, facts),
+            declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
+        }),*]
+    };
+}
+
+macro_rules! estimator_entries {
+    ({ $($estimator:ident => $type:ident($options:ident),)* }) => {
+        &[$(EstimatorEntry {
+            name: <crate::estimator::$estimator::$type as Estimator>::NAME,
+            slots: <crate::estimator::$estimator::$type as Estimator>::SLOTS,
+            light_paths: |settings| <crate::estimator::$estimator::$type as Estimator>::light_paths(&settings.$estimator),
+            filter: |settings| <crate::estimator::$estimator::$type as Estimator>::filter(&settings.$estimator),
+            samples: |settings| <crate::estimator::$estimator::$type as Estimator>::samples(&settings.$estimator),
+            open: |device| <crate::estimator::$estimator::$type as Estimator>::open(device),
+        }),*]
+    };
+}
+
+macro_rules! tables {
+    (direct $direct:tt diffuse $diffuse:tt caustics $caustics:tt specular $specular:tt estimator $estimator:tt) => {
+        static DIRECT: &[MethodEntry] = entries! { direct $direct };
+        static DIFFUSE: &[MethodEntry] = entries! { diffuse $diffuse };
+        static CAUSTICS: &[MethodEntry] = entries! { caustics $caustics };
+        static SPECULAR: &[MethodEntry] = entries! { specular $specular };
+        static ESTIMATORS: &[EstimatorEntry] = estimator_entries! { $estimator };
+    };
+}
+for_all_methods! { tables }
+
+impl Methods {
+    /// The estimator that fills some slot, if one does. It then fills `direct` and `emission` too where rays are asked for.
+    pub(crate) fn estimator(&self) -> Option<&'static EstimatorEntry> {
+        let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular];
+        indirect.into_iter().find_map(|slot| ESTIMATORS.iter().find(|entry| entry.name == self.name_of(slot)))
+    }
+
+    /// What fills `slot`: nothing in particular for emission.
+    pub(crate) fn filler(&self, slot: Slot) -> Option<Filler> {
+        let name = self.name_of(slot);
+        let along = self.direct == DirectMethod::Traced && [Slot::Emission, Slot::Direct].contains(&slot);
+        let estimator = self.estimator().filter(|entry| entry.slots.contains(&slot) && (along || entry.name == name));
+        let methods = match slot {
+            Slot::Emission => &[],
+            Slot::Direct => DIRECT,
+            Slot::Diffuse => DIFFUSE,
+            Slot::Caustics => CAUSTICS,
+            Slot::Specular => SPECULAR,
+        };
+        let method = methods.iter().find(|entry| entry.name == name);
+        estimator.map(Filler::Estimator).or(method.map(Filler::Method))
+    }
+}
+
+impl Settings {
+    /// Scatterings between the light and the first visible surface that the methods account for, at most; `None`: no limit. What
+    /// a reference of equal light paths is limited to.
+    pub fn bounces(&self) -> Option<u32> {
+        let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular];
+        let mut filled = indirect.into_iter().filter(|slot| self.methods.fills(*slot));
+        filled.try_fold(0, |most, slot| Some(self.light_paths(slot).bounces?.max(most)))
+    }
+
+    /// What a reference of equal light paths shows in `slot`. Slots that no indirect method fills go with `diffuse`.
+    pub fn light_paths(&self, slot: Slot) -> LightPaths {
+        let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].contains(&slot);
+        match self.methods.filler(slot).filter(|_| indirect) {
+            Some(Filler::Method(method)) => (method.light_paths)(self),
+            Some(Filler::Estimator(estimator)) => (estimator.light_paths)(self),
+            None if slot == Slot::Diffuse => LightPaths::up_to(0),
+            None => LightPaths { caustics: Default::default(), ..self.light_paths(Slot::Diffuse) },
+        }
+    }
+
+    /// Where in a pixel the methods sample light: at its centre, unless an estimator does otherwise.
+    pub fn filter(&self) -> PixelFilter {
+        self.methods.estimator().map_or(PixelFilter::Center, |estimator| (estimator.filter)(self))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::technique::Technique;
+    use super::*;
+    use crate::method::Preset;
+
+    #[test]
+    fn methods_say_what_they_account_for() {
+        let of = |technique| Settings::new(technique, Preset::Default);
+        assert_eq!((of(Technique::Direct).bounces(), of(Technique::Rsm).bounces()), (Some(0), Some(1)));
+        let mut path = of(Technique::Path);
+        assert_eq!(path.bounces(), None);
+        path.path.bounces = Some(3);
+        assert_eq!((path.bounces(), path.filter()), (Some(3), PixelFilter::Center));
+        path.path.filter = PixelFilter::Box;
+        assert_eq!(path.filter(), PixelFilter::Box);
+        let rsm = of(Technique::Rsm).with(|rsm| rsm.path = path.path.clone());
+        assert_eq!((rsm.bounces(), rsm.filter()), (Some(1), PixelFilter::Center));
+        let filled = |technique| Slot::ALL.into_iter().filter(move |slot| of(technique).methods.fills(*slot));
+        assert!(filled(Technique::Direct).eq([Slot::Emission, Slot::Direct]));
+        assert!(filled(Technique::Rsm).eq([Slot::Emission, Slot::Direct, Slot::Diffuse]));
+    }
+}
