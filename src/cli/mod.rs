@@ -15,6 +15,7 @@ mod reference;
 mod render;
 mod scene_args;
 mod scenes;
+mod settings;
 mod sweep;
 mod terminal;
 mod values;
@@ -46,6 +47,7 @@ enum Command {
     Reference(reference::ReferenceArgs),
     Graph(graph::GraphArgs),
     Scenes(scenes::ScenesArgs),
+    Settings(settings::SettingsArgs),
     Devices(devices::DevicesArgs),
 }
 
@@ -68,6 +70,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Reference(args) => reference::run(args, &invocation),
         Command::Graph(args) => graph::run(args, &invocation),
         Command::Scenes(args) => scenes::run(args, &invocation),
+        Command::Settings(args) => settings::run(args, &invocation),
         Command::Devices(args) => devices::run(args, &invocation),
     };
     match done {
