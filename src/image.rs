@@ -11,6 +11,7 @@ use serde::Serialize;
 /// How linear radiance becomes display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum ToneMap {
     /// Drago et al. 2003, adaptive logarithmic mapping.
     Drago,

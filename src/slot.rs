@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 /// diffuse or the specular lobe, L the light, E the eye:
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Slot {
     /// L E: the surface itself emits; also the sky where no surface is.
     Emission,
@@ -53,6 +54,7 @@ pub const IMAGE: &str = "image";
 /// Where in a pixel light is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum PixelFilter {
     /// At its centre, as rasterisation does.
     #[default]
@@ -76,6 +78,7 @@ impl PixelFilter {
 /// Which light the slot `caustics` shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum CausticPaths {
     /// All that reaches a diffuse lobe from a specular vertex, L (D|S)* S D E: the slot's definition.
     #[default]

@@ -18,6 +18,7 @@ pub(crate) const COVERED: &str = "covered";
 
 /// Why a run has no errors.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ErrorsUnknown {
     /// There is no reference, for any contender.
     #[error("there is no reference: {0}")]

@@ -8,6 +8,7 @@ use super::units;
 
 /// What a row is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RowKind {
     /// Several passes together.
     Piece,

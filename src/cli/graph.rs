@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use irradia::output::AtomicFile;
-use irradia::renderer::{FrameRequest, Renderer, Timing};
+use irradia::renderer::{FrameRequest, Renderer};
 
 use super::invocation::Invocation;
 use super::method_args::MethodArgs;
@@ -31,15 +31,8 @@ pub(crate) fn run(args: &GraphArgs, invocation: &Invocation<'_>) -> Result<()> {
     let settings = args.methods.settings()?;
     let scene = args.scene_args.open(&args.scene)?.scene;
     let context = invocation.context()?;
-    let request = FrameRequest {
-        size: args.scene_args.size,
-        camera: args.scene_args.view(&scene)?,
-        slots: Vec::new(),
-        image: true,
-        tonemap: None,
-        timing: Timing::Frame,
-        read_back: false,
-    };
+    let request = FrameRequest::new(args.scene_args.size, args.scene_args.view(&scene)?);
+    let request = request.with(|request| request.read_back = false);
     let description = Renderer::new(&context, settings)?.describe(&scene, &request)?;
     if let Some(path) = &args.dot {
         AtomicFile::write_whole(path, |file| file.write_all(description.dot().as_bytes()))?;

@@ -8,7 +8,7 @@ use clap::Args;
 use irradia::image::tone_map;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::IMAGE;
-use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
+use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, ToneMap};
 use irradia::scene::CameraView;
 
 use super::attributes::Picture;
@@ -119,15 +119,12 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
 fn request(args: &RenderArgs, camera: CameraView) -> FrameRequest {
     // Supersampled pixels are averaged before they are tone-mapped.
     let display = args.output.format == ImageFormat::Png && args.aa == 1;
-    FrameRequest {
-        size: args.scene_args.size.map(|side| side.saturating_mul(args.aa)),
-        camera,
-        slots: Choice::expand(&args.slots, &Slot::ALL),
-        image: !display,
-        tonemap: display.then(|| args.tonemap.unwrap_or_default()),
-        timing: Timing::Frame,
-        read_back: true,
-    }
+    let size = args.scene_args.size.map(|side| side.saturating_mul(args.aa));
+    FrameRequest::new(size, camera).with(|request| {
+        request.slots = Choice::expand(&args.slots, &Slot::ALL);
+        request.image = !display;
+        request.tonemap = display.then(|| args.tonemap.unwrap_or_default());
+    })
 }
 
 /// The frame at the size asked for.
@@ -181,6 +178,7 @@ fn write(path: &Path, format: ImageFormat, frame: &Frame, picture: &Picture<'_>)
             let display = frame.display.as_ref().context("the renderer gave back no display values")?;
             output::write_png(path, frame.size, display, &attributes)?;
         }
+        other => bail!("{} cannot be written as {other:?}", path.display()),
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 /// How the frame is timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Timing {
     /// One pair of timestamps around the frame; passes overlap as the driver likes.
     #[default]

@@ -10,6 +10,7 @@ pub struct UnknownPreset(pub String);
 /// A trade of time against error, fixed per method by measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Preset {
     /// Fast, for looking around.
     Draft,

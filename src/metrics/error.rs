@@ -4,6 +4,7 @@ use crate::image::ColorImage;
 
 /// Which of the two images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Side {
     /// The one that is measured.
     Image,
@@ -22,6 +23,7 @@ impl std::fmt::Display for Side {
 
 /// Why two images cannot be compared: one sentence.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MetricsError {
     /// The images are of different size.
     #[error(

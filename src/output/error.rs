@@ -7,6 +7,7 @@ pub(super) const EXTENSIONS: [&str; 2] = [".exr", ".png"];
 
 /// A file that could not be written or read. One sentence: which file, why.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// The extension names no format that we write.
     #[error("{path} is no image that irradia writes; the extensions are {known}", path = .0.display(), known = EXTENSIONS.join(", "))]

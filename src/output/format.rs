@@ -6,6 +6,7 @@ use super::error::{EXTENSIONS, OutputError};
 
 /// The image formats that irradia writes, chosen by a file's extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ImageFormat {
     /// OpenEXR: linear radiance, float32, the image and its slots.
     Exr,

@@ -13,6 +13,7 @@ use crate::slot::{CausticPaths, PixelFilter};
 /// How light transport is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Estimator {
     /// Path tracing with next-event estimation, and light tracing for what it finds badly.
     Path,

@@ -12,6 +12,7 @@ use crate::slot::Slot;
 
 /// What is asked of one frame.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FrameRequest {
     /// Width and height in pixels, each 1 to the device's limit.
     pub size: [u32; 2],
@@ -42,6 +43,13 @@ impl FrameRequest {
             timing: Timing::Frame,
             read_back: true,
         }
+    }
+
+    /// The same request but for what `change` does to it.
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut FrameRequest)) -> FrameRequest {
+        change(&mut self);
+        self
     }
 
     /// Whether the frame needs the slot, by itself or as a part of the image.

@@ -40,6 +40,7 @@ pub struct Channel {
 
 /// A part of a node's transform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Property {
     /// Metres in the parent's space.
     Translation,
@@ -51,6 +52,7 @@ pub enum Property {
 
 /// How values between keyframes are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Interpolation {
     /// Straight, or along the shortest arc for rotations.
     Linear,

@@ -14,6 +14,7 @@ pub struct Camera {
 
 /// How a camera maps the world to the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
     /// Central projection, without a far plane.
     Perspective {

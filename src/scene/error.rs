@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// Why a scene could not be loaded or changed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// The file itself could not be read.
     #[error("cannot read the scene {}: {source}", path.display())]

@@ -42,6 +42,7 @@ impl Light {
 
 /// Shape of a light without area.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LightKind {
     /// Shines alike in all directions.
     Point,

@@ -148,6 +148,7 @@ impl Material {
 
 /// What the base colour's alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Alpha {
     /// Nothing.
     Opaque,
@@ -213,6 +214,7 @@ impl Texture {
 
 /// What a texture shows outside its borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Wrap {
     /// Starts again.
     #[default]

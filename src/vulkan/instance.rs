@@ -11,6 +11,7 @@ use super::error::{Called, VulkanError};
 
 /// How much the validation layer checks. Every message it gives fails a test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Validation {
     /// No layer.
     #[default]

@@ -95,6 +95,7 @@ pub struct Series {
 /// Which points of a scene are measured by one call, rendering in turn, so that drift of the machine hits them alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Interleave {
     /// None: a point renders alone.
     Point,
@@ -108,6 +109,7 @@ pub enum Interleave {
 /// What an error is counted against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Compare {
     /// Full light transport.
     #[default]
@@ -119,6 +121,7 @@ pub enum Compare {
 /// How an error is counted; see [`ImageErrors`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Metric {
     /// Root of the mean squared difference, W/(m² sr).
     Rmse,

@@ -13,6 +13,7 @@ use crate::scene::LightSpec;
 
 /// A grid that cannot be read. One sentence: which file, where in it, what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// The file cannot be read.
     #[error("{path} cannot be read: {reason}", path = .path.display())]

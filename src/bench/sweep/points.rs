@@ -27,6 +27,7 @@ pub struct Point {
 
 /// The points of a grid cannot be told. One sentence: which series, what is wrong with it.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PointsError {
     /// A setting does not exist or does not take a value.
     #[error("series {series:?}: {what}")]

@@ -73,6 +73,7 @@ impl std::fmt::Display for PointFailure {
 
 /// A result that cannot be used. One sentence: which file, why, what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SweepError {
     /// The file cannot be read or holds something else.
     #[error("{path} is no result of a sweep: {reason}", path = .path.display())]

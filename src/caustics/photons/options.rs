@@ -57,6 +57,7 @@ choices! {
 
 /// What stands for the scene where photons are not traced through its hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum PhotonGeometry {
     /// Every surface, in lists of each pixel.
     Lists,
