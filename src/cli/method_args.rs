@@ -23,7 +23,7 @@ pub(crate) struct OptionArgs {
     /// The method of the specular slot, instead of the technique's
     #[arg(long, value_name = "METHOD", value_parser = values::method(Slot::Specular))]
     specular: Option<String>,
-    /// Samples a pixel of traced paths, the same as --set path.spp=N
+    /// Samples a pixel of traced paths or passes of photons, the same as --set path.spp=N or sppm.spp=N
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     spp: Option<u32>,
     /// Scatterings between the light and the first visible surface at most; 0: direct light alone. The same as --set PIECE.bounces=N for every piece
@@ -43,7 +43,7 @@ pub(crate) struct OptionArgs {
 
 impl OptionArgs {
     fn chooses_filter(&self) -> bool {
-        self.filter.is_some() || self.set.iter().any(|setting| setting.key == "path.filter")
+        self.filter.is_some() || self.set.iter().any(|setting| setting.key.ends_with(".filter"))
     }
 
     /// The settings of `technique` at `preset`, with what the arguments change.
@@ -60,12 +60,11 @@ impl OptionArgs {
                 settings.methods.set(slot, method)?;
             }
         }
-        let path = &mut settings.path;
-        path.spp = self.spp.unwrap_or(path.spp);
-        path.seed = self.seed.unwrap_or(path.seed);
-        path.filter = self.filter.unwrap_or(path.filter);
-        if let Some(bounces) = self.bounces {
-            settings.set_bounces(bounces)?;
+        let filter = self.filter.map(|filter| filter.name().to_owned());
+        let numbers = [("spp", self.spp), ("bounces", self.bounces), ("seed", self.seed)];
+        let numbers = numbers.into_iter().filter_map(|(name, number)| Some((name, number?.to_string())));
+        for (name, value) in numbers.chain(filter.map(|name| ("filter", name))) {
+            settings.set_everywhere(name, &value)?;
         }
         for Setting { key, value } in &self.set {
             settings.set(key, value)?;
@@ -105,8 +104,8 @@ impl MethodArgs {
     /// The same, with pixels that are filtered where nothing but traced paths makes them.
     pub(crate) fn settings_of_pictures(&self) -> Result<Settings> {
         let mut settings = self.settings()?;
-        if self.technique == Technique::Path && !self.options.chooses_filter() {
-            settings.path.filter = PixelFilter::Box;
+        if [Technique::Path, Technique::Sppm].contains(&self.technique) && !self.options.chooses_filter() {
+            settings.set_everywhere("filter", PixelFilter::Box.name())?;
         }
         Ok(settings)
     }

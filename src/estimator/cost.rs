@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::graph::{Executed, PassTiming, ReadBack};
+use crate::graph::{Executed, PassTiming, ReadBack, Store};
 
 /// What a run of samples cost.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +15,8 @@ pub(crate) struct TraceCost {
     pub(crate) rays: u64,
     /// The passes, those of the same name together.
     pub(crate) passes: Vec<PassTiming>,
+    /// The most that each piece held between submissions, bytes.
+    pub(crate) memory_bytes: BTreeMap<String, u64>,
 }
 
 impl TraceCost {
@@ -32,6 +34,14 @@ impl TraceCost {
         self.rays += u64::from(totals[0]);
         self.add(executed);
         totals[1]
+    }
+
+    /// Notes what is held between two submissions.
+    pub(super) fn note_memory(&mut self, store: &Store) {
+        for (piece, bytes) in store.memory_by_piece() {
+            let held = self.memory_bytes.entry(piece).or_insert(0);
+            *held = bytes.max(*held);
+        }
     }
 
     pub(super) fn add(&mut self, executed: Executed) {

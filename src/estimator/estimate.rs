@@ -1,13 +1,12 @@
 //! What an estimator is: whoever can add up samples of several slots of a picture.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::cost::TraceCost;
 use super::sums::SlotSums;
 use super::view::EstimateRequest;
 use crate::frame::rays::TracedScene;
-use crate::graph::{GraphDescription, PassTiming, Timing};
+use crate::graph::{GraphDescription, Timing};
 use crate::method::Options;
 use crate::scene::CameraView;
 use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
@@ -18,6 +17,8 @@ pub(crate) trait Estimator {
     /// The name on the command line.
     const NAME: &'static str;
     const SLOTS: &'static [Slot];
+    /// Piece and name of the pass that a frame begins with: the row that says that nothing changed.
+    const FIRST_PASS: [&'static str; 2];
     type Options: Options;
 
     /// Which light it can find: what it is compared with.
@@ -75,12 +76,6 @@ pub(crate) trait Estimating {
 
     /// What was spent since this was last asked.
     fn take_cost(&mut self) -> TraceCost;
-
-    /// The most device memory that was held at a time, bytes, by piece.
-    fn memory_bytes(&self) -> BTreeMap<String, u64>;
-
-    /// The passes of a frame in which nothing changed.
-    fn unchanged_passes(&self) -> Vec<PassTiming>;
 
     /// The passes that some samples take.
     ///

@@ -4,7 +4,6 @@
 //! [`super::camera_paths`]; each leaves a queue of the paths that go on, and the next one is dispatched for so many. Nothing two paths do
 //! touches the same memory, so the same samples give the same bits on one device.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::camera_paths::{self, Sums, Wave};
@@ -13,12 +12,10 @@ use super::estimate::{Estimating, Estimator, Samples};
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::options::PathOptions;
 use super::paths::Paths;
-use super::sums::{SampleSource, SlotSums, scatter_sums, seed_of_half, seed_of_sample};
+use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::frame::rays::TracedScene;
-use crate::graph::{Graph, GraphDescription, PassTiming, Store, Timing};
-use crate::method::Error;
-use crate::scene::Scene;
+use crate::graph::{Graph, GraphDescription, Store, Timing};
 use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Device, VulkanError};
 
@@ -36,19 +33,11 @@ pub(crate) struct PathTracer {
     scene: Option<Arc<TracedScene>>,
     timing: Timing,
     cost: TraceCost,
-    /// The most that each piece held between submissions, bytes.
-    held: BTreeMap<String, u64>,
 }
 
 impl PathTracer {
     pub(crate) fn new(device: &Arc<Device>) -> Result<PathTracer, VulkanError> {
-        Ok(PathTracer {
-            store: Store::new(device)?,
-            scene: None,
-            timing: Timing::Frame,
-            cost: TraceCost::default(),
-            held: BTreeMap::new(),
-        })
+        Ok(PathTracer { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
     }
 
     /// Lets the lights of the scene send out paths or not, whatever it contains: the expectation is the same. Only where something
@@ -63,13 +52,6 @@ impl PathTracer {
     pub(crate) fn view(&self, request: &EstimateRequest) -> View {
         let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
         View::new(request, origin)
-    }
-
-    fn note_memory(&mut self) {
-        for (piece, bytes) in self.store.memory_by_piece() {
-            let held = self.held.entry(piece).or_insert(0);
-            *held = bytes.max(*held);
-        }
     }
 
     /// The sums over samples `first .. first + count` of half `half` of every pixel.
@@ -134,7 +116,7 @@ impl PathTracer {
                 graph.want_buffer(paths.radiance);
                 let totals = paths.want(&mut graph);
                 let executed = graph.run(self.timing)?;
-                self.note_memory();
+                self.cost.note_memory(&self.store);
                 if self.cost.add_step(executed, totals) == 0 {
                     break;
                 }
@@ -196,7 +178,7 @@ impl PathTracer {
                     splats.want(&mut graph);
                     let totals = paths.want(&mut graph);
                     let executed = graph.run(self.timing)?;
-                    self.note_memory();
+                    self.cost.note_memory(&self.store);
                     if self.cost.add_step(executed, totals) == 0 {
                         break;
                     }
@@ -241,22 +223,6 @@ impl Estimating for PathTracer {
         std::mem::take(&mut self.cost)
     }
 
-    fn memory_bytes(&self) -> BTreeMap<String, u64> {
-        let mut bytes = self.held.clone();
-        bytes.insert("scene".to_owned(), self.scene.as_ref().map_or(0, |scene| scene.bytes()));
-        bytes
-    }
-
-    fn unchanged_passes(&self) -> Vec<PassTiming> {
-        vec![PassTiming {
-            piece: "path".to_owned(),
-            pass: "generate".to_owned(),
-            ms: None,
-            skipped: Some("unchanged: geometry, materials, lights, camera".to_owned()),
-            work: BTreeMap::new(),
-        }]
-    }
-
     fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError> {
         let scene = self.scene.clone().expect("set before it is described");
         let view = &self.view(request);
@@ -293,6 +259,7 @@ pub(crate) struct Path;
 impl Estimator for Path {
     const NAME: &'static str = "path";
     const SLOTS: &'static [Slot] = &Slot::ALL;
+    const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
     type Options = PathOptions;
 
     fn light_paths(options: &PathOptions) -> LightPaths {
@@ -328,31 +295,4 @@ fn capacity(view: &View, count: u32) -> u32 {
 fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
     let all = view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(1 + beyond));
     (depth + DEPTHS_PER_SUBMISSION).min(all)
-}
-
-/// A request's samples by the path tracer.
-pub(crate) struct PathSource {
-    tracer: PathTracer,
-    view: View,
-}
-
-impl PathSource {
-    /// # Errors
-    /// A scene that does not fit the device.
-    pub(crate) fn new(device: &Arc<Device>, scene: &Scene, request: &EstimateRequest) -> Result<PathSource, Error> {
-        let mut tracer = PathTracer::new(device)?;
-        tracer.set_scene(Arc::new(TracedScene::new(device, scene)?));
-        let view = tracer.view(request);
-        Ok(PathSource { tracer, view })
-    }
-}
-
-impl SampleSource for PathSource {
-    fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error> {
-        Ok(self.tracer.sums(&self.view, half, first, count)?)
-    }
-
-    fn rays(&self) -> u64 {
-        self.tracer.cost.rays
-    }
 }

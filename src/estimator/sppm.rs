@@ -21,17 +21,19 @@
 //! 2n + h + 1, so that both halves shrink alike.
 
 use super::camera_paths::{self, Sums, Wave};
+use super::cost::TraceCost;
+use super::estimate::{Estimating, Estimator, Samples};
 use super::light_paths::{self, Swarm, scale_of};
+use super::options::SppmOptions;
 use super::paths::{Paths, Walk};
 use super::photon_map::{Disc, PhotonMap};
 use std::sync::Arc;
 
-use super::sums::{SampleSource, SlotSums, scatter_sums, seed_of_half, seed_of_sample};
+use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::frame::rays::TracedScene;
-use crate::graph::{Executed, Graph, ReadBack, Store, Timing};
-use crate::method::Error;
-use crate::scene::Scene;
+use crate::graph::{Executed, Graph, GraphDescription, ReadBack, Store, Timing};
+use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Device, VulkanError};
 
 /// The share of the photons that a pass keeps.
@@ -49,14 +51,23 @@ const BYTES_PER_PATH: u32 = 80;
 /// Vertices that one submission advances paths by, at most.
 const DEPTHS_PER_SUBMISSION: u32 = 12;
 
-/// A request's samples by photon mapping.
-pub(crate) struct SppmSource {
+/// Maps photons of one scene.
+pub(crate) struct PhotonMapper {
     store: Store,
-    scene: TracedScene,
+    scene: Option<Arc<TracedScene>>,
+    timing: Timing,
+    cost: TraceCost,
+}
+
+/// A picture being made.
+struct Mapping<'a> {
+    store: &'a mut Store,
+    cost: &'a mut TraceCost,
+    scene: &'a TracedScene,
+    timing: Timing,
     view: View,
     run_blocks: u32,
     swarm_paths: u32,
-    rays: u64,
 }
 
 /// Some pixels of one pass.
@@ -69,21 +80,31 @@ struct Pass {
     first: bool,
 }
 
-impl SppmSource {
-    /// # Errors
-    /// A scene that does not fit the device.
-    pub(crate) fn new(device: &Arc<Device>, scene: &Scene, request: &EstimateRequest) -> Result<SppmSource, Error> {
-        let scene = TracedScene::new(device, scene)?;
-        let view = View::new(request, scene.origin);
-        let [width, height] = request.size;
-        let blocks = width.div_ceil(8) * height.div_ceil(8);
-        let paths = RUN_PATHS.min(device.limits().max_storage_buffer_range / BYTES_PER_PATH).max(64);
-        let runs = blocks.div_ceil(paths / 64).max(1);
-        let run_blocks = blocks.div_ceil(runs);
-        let swarm_paths = SWARM_PATHS.min(64 * run_blocks);
-        Ok(SppmSource { store: Store::new(device)?, scene, view, run_blocks, swarm_paths, rays: 0 })
+impl PhotonMapper {
+    pub(crate) fn new(device: &Arc<Device>) -> Result<PhotonMapper, VulkanError> {
+        Ok(PhotonMapper { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
     }
 
+    fn mapping<'a>(&'a mut self, scene: &'a TracedScene, request: &EstimateRequest) -> Mapping<'a> {
+        let [width, height] = request.size;
+        let blocks = width.div_ceil(8) * height.div_ceil(8);
+        let largest = self.store.device().limits().max_storage_buffer_range;
+        let paths = RUN_PATHS.min(largest / BYTES_PER_PATH).max(64);
+        let runs = blocks.div_ceil(paths / 64).max(1);
+        let run_blocks = blocks.div_ceil(runs);
+        Mapping {
+            store: &mut self.store,
+            cost: &mut self.cost,
+            scene,
+            timing: self.timing,
+            view: View::new(request, scene.origin),
+            run_blocks,
+            swarm_paths: SWARM_PATHS.min(64 * run_blocks),
+        }
+    }
+}
+
+impl Mapping<'_> {
     fn sums_of_passes(&mut self, half: u32, [first, count]: [u32; 2]) -> Result<SlotSums, VulkanError> {
         let [width, height] = self.view.size;
         let blocks = width.div_ceil(8) * height.div_ceil(8);
@@ -98,8 +119,8 @@ impl SppmSource {
             for sample in first..first + count {
                 let wave = Wave { first_block, block_count, sample_count: 1, first_sample: sample, seed };
                 let radius =
-                    radius_of_pass(first_radius(&self.scene, &self.view), 2 * u64::from(sample) + u64::from(half) + 1);
-                let disc = Disc { radius: radius as f32, scale: scale_of(&self.scene) };
+                    radius_of_pass(first_radius(self.scene, &self.view), 2 * u64::from(sample) + u64::from(half) + 1);
+                let disc = Disc { radius: radius as f32, scale: scale_of(self.scene) };
                 let pass = Pass { wave, half, disc, first: sample == first };
                 self.walk_from_camera(&pass)?;
                 if self.scene.emitter_count > 0 && self.view.bounces != Some(0) {
@@ -117,14 +138,14 @@ impl SppmSource {
 
     /// Declares what stands between the submissions of a pass.
     fn declare<'s>(&'s mut self, wave: &Wave) -> (Graph<'s>, &'s TracedScene, &'s View, Paths, PhotonMap, Sums) {
-        let mut graph = Graph::new(&mut self.store);
-        let mut paths = Paths::declare(&mut graph, &self.scene, &self.view, 64 * self.run_blocks);
+        let mut graph = Graph::new(self.store);
+        let mut paths = Paths::declare(&mut graph, self.scene, &self.view, 64 * self.run_blocks);
         let all = self.scene.sky == [0.0; 3] && !self.scene.ranged_lights;
         // PHOTONS_ALL or PHOTONS_SOME of glsl/path/state.glsl; light paths are not connected to the camera, and weigh nothing.
         (paths.variants.photons, paths.variants.light_paths) = (if all { 1 } else { 2 }, 0);
         let map = PhotonMap::declare(&mut graph, &paths, PHOTONS_PER_PATH * self.swarm_paths);
         let sums = Sums::declare(&mut graph, wave);
-        (graph, &self.scene, &self.view, paths, map, sums)
+        (graph, self.scene, &self.view, paths, map, sums)
     }
 
     /// Finds the light that needs no photons, and the measurement points.
@@ -132,6 +153,7 @@ impl SppmSource {
         let all = self.view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(2));
         let mut depth = 0;
         loop {
+            let timing = self.timing;
             let (mut graph, scene, view, paths, map, _) = self.declare(&pass.wave);
             if depth == 0 {
                 if pass.first {
@@ -148,9 +170,9 @@ impl SppmSource {
             map.want(&mut graph);
             graph.want_buffer(paths.radiance);
             let totals = paths.want(&mut graph);
-            let [rays, active, ..] = words(&mut graph.run(Timing::Frame)?, totals);
-            self.rays += u64::from(rays);
-            if active == 0 {
+            let executed = graph.run(timing)?;
+            self.cost.note_memory(self.store);
+            if self.cost.add_step(executed, totals) == 0 {
                 return Ok(());
             }
         }
@@ -174,6 +196,7 @@ impl SppmSource {
                     photons = 0;
                     continue;
                 }
+                let timing = self.timing;
                 let (mut graph, scene, view, paths, map, _) = self.declare(&pass.wave);
                 if depth == 0 {
                     light_paths::emit(&mut graph, &paths, scene, view, &swarm);
@@ -185,11 +208,10 @@ impl SppmSource {
                 depth = until;
                 let stored = map.want(&mut graph);
                 let totals = paths.want(&mut graph);
-                let mut executed = graph.run(Timing::Frame)?;
-                let rays;
-                [rays, active, ..] = words(&mut executed, totals);
+                let mut executed = graph.run(timing)?;
                 [.., photons] = words(&mut executed, stored);
-                self.rays += u64::from(rays);
+                self.cost.note_memory(self.store);
+                active = self.cost.add_step(executed, totals);
             }
         }
         if photons > 0 { self.gather(pass) } else { Ok(()) }
@@ -197,22 +219,25 @@ impl SppmSource {
 
     /// Finds how much surface there is around each measurement point.
     fn probe(&mut self, pass: &Pass) -> Result<(), VulkanError> {
+        let timing = self.timing;
         let (mut graph, scene, _, paths, map, _) = self.declare(&pass.wave);
         map.probe(&mut graph, &paths, scene, pass.disc);
         map.want(&mut graph);
         paths.want(&mut graph);
-        graph.run(Timing::Frame).map(|_| ())
+        graph.run(timing).map(|executed| self.cost.add(executed))
     }
 
     fn gather(&mut self, pass: &Pass) -> Result<(), VulkanError> {
+        let timing = self.timing;
         let (mut graph, _, view, paths, map, _) = self.declare(&pass.wave);
         map.gather(&mut graph, &paths, view, pass.disc);
         map.want(&mut graph);
-        graph.run(Timing::Frame).map(|_| ())
+        graph.run(timing).map(|executed| self.cost.add(executed))
     }
 
     /// Adds the pass to the sums; after the `last` one these are returned as [`Sums::read_back`] leaves them.
     fn add_pass(&mut self, pass: &Pass, last: bool) -> Result<Option<Vec<[f32; 4]>>, VulkanError> {
+        let timing = self.timing;
         let (mut graph, _, _, paths, _, sums) = self.declare(&pass.wave);
         if pass.first {
             sums.clear(&mut graph);
@@ -220,18 +245,94 @@ impl SppmSource {
         sums.add(&mut graph, &paths, &pass.wave);
         graph.want_buffer(paths.radiance);
         let read_back = last.then(|| sums.read_back(&mut graph));
-        let mut executed = graph.run(Timing::Frame)?;
-        Ok(read_back.map(|read_back| bytemuck::pod_collect_to_vec(&executed.take(read_back))))
+        let mut executed = graph.run(timing)?;
+        let texels = read_back.map(|read_back| bytemuck::pod_collect_to_vec(&executed.take(read_back)));
+        self.cost.add(executed);
+        Ok(texels)
     }
 }
 
-impl SampleSource for SppmSource {
-    fn sums(&mut self, half: u32, first: u32, count: u32) -> Result<SlotSums, Error> {
-        Ok(self.sums_of_passes(half, [first, count])?)
+impl Estimating for PhotonMapper {
+    fn set_scene(&mut self, scene: Arc<TracedScene>) {
+        self.scene = Some(scene);
     }
 
-    fn rays(&self) -> u64 {
-        self.rays
+    fn release_scene(&mut self) {
+        self.scene = None;
+    }
+
+    fn set_timing(&mut self, timing: Timing) {
+        self.timing = timing;
+    }
+
+    fn add_up(
+        &mut self,
+        request: &EstimateRequest,
+        half: u32,
+        first: u32,
+        count: u32,
+    ) -> Result<SlotSums, VulkanError> {
+        let scene = self.scene.clone().expect("set before it is asked for samples");
+        self.mapping(&scene, request).sums_of_passes(half, [first, count])
+    }
+
+    fn take_cost(&mut self) -> TraceCost {
+        std::mem::take(&mut self.cost)
+    }
+
+    /// The steps of one pass with the first vertices of its paths; those of later vertices are the same.
+    fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError> {
+        let scene = self.scene.clone().expect("set before it is described");
+        let mut mapping = self.mapping(&scene, request);
+        let wave = Wave {
+            first_block: 0,
+            block_count: mapping.run_blocks,
+            sample_count: 1,
+            first_sample: 0,
+            seed: request.seed,
+        };
+        let disc = Disc { radius: first_radius(&scene, &mapping.view) as f32, scale: scale_of(&scene) };
+        let swarm = Swarm { first_path: 0, path_count: mapping.swarm_paths, seed: request.seed };
+        let (mut graph, scene, view, paths, map, sums) = mapping.declare(&wave);
+        camera_paths::generate(&mut graph, &paths, view, &wave);
+        for depth in 0..2 {
+            advance_from_camera(&mut graph, &paths, &map, scene, view, depth);
+        }
+        map.probe(&mut graph, &paths, scene, disc);
+        light_paths::emit(&mut graph, &paths, scene, view, &swarm);
+        for depth in 0..2 {
+            advance_from_light(&mut graph, &paths, &map, scene, view, disc, depth);
+        }
+        map.gather(&mut graph, &paths, view, disc);
+        sums.add(&mut graph, &paths, &wave);
+        Ok(graph.describe())
+    }
+}
+
+/// Stochastic progressive photon mapping, for caustics that are seen in mirrors or through glass.
+pub(crate) struct Sppm;
+
+impl Estimator for Sppm {
+    const NAME: &'static str = "sppm";
+    const SLOTS: &'static [Slot] = &Slot::ALL;
+    const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
+    type Options = SppmOptions;
+
+    fn light_paths(options: &SppmOptions) -> LightPaths {
+        LightPaths::up_to(options.bounces)
+    }
+
+    fn filter(options: &SppmOptions) -> PixelFilter {
+        options.filter
+    }
+
+    fn samples(options: &SppmOptions) -> Samples {
+        let SppmOptions { spp, bounces, filter, seed } = *options;
+        Samples { spp, bounces, caustics: CausticPaths::All, filter, seed }
+    }
+
+    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError> {
+        Ok(Box::new(PhotonMapper::new(device)?))
     }
 }
 

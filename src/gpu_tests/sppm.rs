@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3};
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, view};
 use super::session::Session;
 use crate::estimator::path::PathTracer;
-use crate::estimator::sppm::SppmSource;
-use crate::estimator::{EstimateRequest, Estimating, SampleSource, SlotSums};
+use crate::estimator::sppm::PhotonMapper;
+use crate::estimator::{EstimateRequest, Estimating, RequestSource, SampleSource, SlotSums};
 use crate::frame::rays::TracedScene;
 use crate::renderer::Slot;
 use crate::scene::{CameraView, Light, LightKind, LightSpec, Material, Scene};
@@ -28,9 +28,15 @@ fn means(sums: &SlotSums) -> [f64; 5] {
     })
 }
 
+fn photon_source(session: &Session, scene: &Scene, request: &EstimateRequest) -> RequestSource {
+    let device = session.context.shared_device();
+    let scene = Arc::new(TracedScene::new(device, scene).expect("a scene that fits"));
+    RequestSource::new(Box::new(PhotonMapper::new(device).expect("a mapper")), scene, request.clone())
+}
+
 fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, passes: u32) -> SlotSums {
     let request = request(SIZE, camera.clone(), bounces);
-    let mut source = SppmSource::new(session.context.shared_device(), scene, &request).expect("a scene that fits");
+    let mut source = photon_source(&session, scene, &request);
     source.sums(0, 0, passes).expect("sums")
 }
 
@@ -132,10 +138,10 @@ fn equal_arguments_give_equal_bits() {
     let scene = builtin("ring");
     let camera = scene.camera_view(None).expect("its camera");
     let request = request([40, 24], camera, None);
-    let mut source = SppmSource::new(session.context.shared_device(), &scene, &request).expect("a scene that fits");
+    let mut source = photon_source(&session, &scene, &request);
     let both = source.sums(1, 3, 2).expect("sums");
     assert_eq!(both, source.sums(1, 3, 2).expect("sums"), "twice by one source");
-    let mut other = SppmSource::new(session.context.shared_device(), &scene, &request).expect("a scene that fits");
+    let mut other = photon_source(&session, &scene, &request);
     let parts = [other.sums(1, 3, 1).expect("sums"), other.sums(1, 4, 1).expect("sums")];
     assert_eq!(both, other.sums(1, 3, 2).expect("sums"), "by another source");
     for (index, pixels) in both.slots.iter().enumerate() {

@@ -19,6 +19,7 @@ macro_rules! for_all_methods {
             specular {}
             estimator {
                 path => Path(PathOptions),
+                sppm => Sppm(SppmOptions),
             }
         }
     };

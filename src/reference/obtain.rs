@@ -92,7 +92,9 @@ impl<'a> Job<'a> {
         Work {
             about: About::new(scene, scene_name, request),
             device: context.device().name,
-            source: Box::new(move || source(context, scene, request)),
+            source: Box::new(move || {
+                source(context, scene, request).map(|source| Box::new(source) as Box<dyn SampleSource>)
+            }),
         }
     }
 }

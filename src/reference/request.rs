@@ -1,10 +1,13 @@
 //! What a reference is asked to show, and who adds up its samples.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
-use crate::estimator::path::PathSource;
-use crate::estimator::sppm::SppmSource;
-use crate::estimator::{EstimateRequest, SampleSource};
+use crate::estimator::path::Path;
+use crate::estimator::sppm::Sppm;
+use crate::estimator::{EstimateRequest, Estimator as _, RequestSource};
+use crate::frame::rays::TracedScene;
 use crate::method::Error;
 use crate::renderer::Context;
 use crate::scene::{CameraView, Scene};
@@ -48,17 +51,14 @@ const SEEDS_OF_REFERENCES: u32 = 0x2545_F491;
 ///
 /// # Errors
 /// An estimator that there is not; a scene that does not fit the device.
-pub(super) fn source<'a>(
-    context: &'a Context,
-    scene: &'a Scene,
-    request: &'a ReferenceRequest,
-) -> Result<Box<dyn SampleSource + 'a>, Error> {
+pub(super) fn source(context: &Context, scene: &Scene, request: &ReferenceRequest) -> Result<RequestSource, Error> {
     let ReferenceRequest { size, camera, estimator, bounces, caustics, filter, seed } = request.clone();
     let device = context.shared_device();
     let request = EstimateRequest { size, camera, bounces, caustics, filter, seed: seed ^ SEEDS_OF_REFERENCES };
-    match estimator {
-        Estimator::Path => Ok(Box::new(PathSource::new(device, scene, &request)?)),
-        Estimator::Sppm if caustics != CausticPaths::All => Err(Error::SppmCaustics),
-        Estimator::Sppm => Ok(Box::new(SppmSource::new(device, scene, &request)?)),
-    }
+    let running = match estimator {
+        Estimator::Path => Path::open(device)?,
+        Estimator::Sppm if caustics != CausticPaths::All => return Err(Error::SppmCaustics),
+        Estimator::Sppm => Sppm::open(device)?,
+    };
+    Ok(RequestSource::new(running, Arc::new(TracedScene::new(device, scene)?), request))
 }

@@ -7,7 +7,7 @@ use super::frame::Estimate;
 use super::methods::EstimatorEntry;
 use crate::estimator::{EstimateRequest, Estimating, Noise, Samples, SlotSums, TraceCost};
 use crate::frame::rays::TracedScene;
-use crate::graph::{FrameTimings, GraphDescription, Timing, hash_of};
+use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing, hash_of};
 use crate::slot::{IMAGE, Slot};
 use crate::vulkan::{Device, VulkanError};
 
@@ -34,6 +34,10 @@ pub(super) struct Estimates {
     name: &'static str,
     running: Box<dyn Estimating>,
     held: Option<Arc<Means>>,
+    /// What stands for its passes while nothing changes.
+    unchanged: PassTiming,
+    /// The most that it held, by piece.
+    memory_bytes: BTreeMap<String, u64>,
 }
 
 impl Estimates {
@@ -45,7 +49,13 @@ impl Estimates {
         scene: Arc<TracedScene>,
     ) -> Result<Estimates, VulkanError> {
         let held = held.filter(|held| held.name == entry.name);
-        let made = || Ok(Estimates { name: entry.name, running: (entry.open)(device)?, held: None });
+        let made = || {
+            let [piece, pass] = entry.first_pass.map(str::to_owned);
+            let skipped = Some("unchanged: geometry, materials, lights, camera".to_owned());
+            let unchanged = PassTiming { piece, pass, ms: None, skipped, work: BTreeMap::new() };
+            let (running, memory_bytes) = ((entry.open)(device)?, BTreeMap::new());
+            Ok(Estimates { name: entry.name, running, held: None, unchanged, memory_bytes })
+        };
         let mut estimates = held.map_or_else(made, Ok)?;
         estimates.running.set_scene(scene);
         Ok(estimates)
@@ -72,19 +82,21 @@ impl Estimates {
         let key = hash_of(&(seen, format!("{:?}", (request, samples.spp))));
         let means = match &self.held {
             Some(held) if held.key == key => {
-                timings.passes = self.running.unchanged_passes();
+                timings.passes = vec![self.unchanged.clone()];
+                timings.memory_bytes.clone_from(&self.memory_bytes);
                 held.clone()
             }
             _ => {
                 self.running.set_timing(timing);
                 let mut made = mean_of_samples(&mut *self.running, request, samples.spp, key)?;
-                let TraceCost { gpu_ms, pipeline_ms, passes, rays } = self.running.take_cost();
+                let TraceCost { gpu_ms, pipeline_ms, passes, rays, memory_bytes } = self.running.take_cost();
                 (timings.gpu_ms, timings.pipeline_ms, timings.passes) = (gpu_ms, pipeline_ms, passes);
                 (made.estimate.rays, made.estimate.seconds) = (rays, 1e-3 * gpu_ms);
+                self.memory_bytes.clone_from(&memory_bytes);
+                timings.memory_bytes = memory_bytes;
                 self.held.insert(Arc::new(made)).clone()
             }
         };
-        timings.memory_bytes = self.running.memory_bytes();
         Ok(means)
     }
 

@@ -25,6 +25,7 @@ pub(crate) struct MethodEntry {
 pub(crate) struct EstimatorEntry {
     pub(crate) name: &'static str,
     pub(crate) slots: &'static [Slot],
+    pub(crate) first_pass: [&'static str; 2],
     pub(crate) light_paths: fn(&Settings) -> LightPaths,
     pub(crate) filter: fn(&Settings) -> PixelFilter,
     pub(crate) samples: fn(&Settings) -> Samples,
@@ -56,6 +57,7 @@ macro_rules! estimator_entries {
         &[$(EstimatorEntry {
             name: <crate::estimator::$estimator::$type as Estimator>::NAME,
             slots: <crate::estimator::$estimator::$type as Estimator>::SLOTS,
+            first_pass: <crate::estimator::$estimator::$type as Estimator>::FIRST_PASS,
             light_paths: |settings| <crate::estimator::$estimator::$type as Estimator>::light_paths(&settings.$estimator),
             filter: |settings| <crate::estimator::$estimator::$type as Estimator>::filter(&settings.$estimator),
             samples: |settings| <crate::estimator::$estimator::$type as Estimator>::samples(&settings.$estimator),

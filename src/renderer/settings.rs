@@ -153,12 +153,15 @@ impl Settings {
         Ok(piece.set(option, value)?)
     }
 
-    /// Limits every piece that has a number of bounces to `bounces`, as far as it takes so many.
-    pub fn set_bounces(&mut self, bounces: u32) -> Result<(), SettingsError> {
+    /// Sets the option `name` of every piece that has one; numbers as far as the piece takes them.
+    ///
+    /// # Errors
+    /// A value that a piece does not take.
+    pub fn set_everywhere(&mut self, name: &str, value: &str) -> Result<(), SettingsError> {
         for piece in self.pieces_mut() {
-            if let Some(info) = piece.table().iter().find(|info| info.name == "bounces") {
-                piece.set(info.name, Value::from(info.kind.clamped(bounces)))?;
-            }
+            let Some(info) = piece.table().iter().find(|info| info.name == name) else { continue };
+            let number = value.parse().map(|number| Value::from(info.kind.clamped(number)));
+            piece.set(name, number.unwrap_or_else(|_| Value::String(value.to_owned())))?;
         }
         Ok(())
     }

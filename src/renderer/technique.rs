@@ -63,6 +63,10 @@ techniques! {
     Path, "path" {
         direct: DirectMethod::Traced, diffuse: DiffuseMethod::Path, caustics: CausticsMethod::Path, specular: SpecularMethod::Path
     }
+    /// Stochastic progressive photon mapping: the reference for caustics that are seen in mirrors or through glass.
+    Sppm, "sppm" {
+        direct: DirectMethod::Traced, diffuse: DiffuseMethod::Sppm, caustics: CausticsMethod::Sppm, specular: SpecularMethod::Sppm
+    }
 }
 
 impl Technique {
