@@ -131,7 +131,6 @@ impl PhotonMap {
             photon_queue: self.photon_queue.read_write(),
             bucket_counts: self.bucket_counts.read_write(),
             specular_lobes: paths.variants.specular,
-            transmissive: paths.variants.transmissive,
             push: shaders::StorePush { depth, bits: self.bits, inverse_cell: disc.inverse_cell(), reserved: 0 },
         };
         graph.pass("sppm/store", store).threads_indirect(paths.alive, 0);
@@ -162,7 +161,6 @@ impl PhotonMap {
             photon_order: self.photon_order.texels(WORD),
             path_radiance: paths.radiance.read_write(),
             specular_lobes: paths.variants.specular,
-            transmissive: paths.variants.transmissive,
             push: shaders::GatherPush {
                 radius: disc.radius,
                 inverse_cell: disc.inverse_cell(),

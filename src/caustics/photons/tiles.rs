@@ -81,8 +81,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let list = TileList::Ordinary;
     // The order in which rows of cells take their places in the sorted list differs from run to run: no pass may make `scan` run again after
     // `sort` has, as one that changed what `scan` leaves would.
-    let no_sums = graph.buffer::<u32>("photons.no_sums", 1).write_then_read();
-    let pass = gather(no_sums, list, [0, i32::MAX]);
+    let pass = gather(ReadWriteBuffer::absent(), list, [0, i32::MAX]);
     graph.pass(&list.pass_name("gather"), pass).threads_indirect(splat.state, list.word());
     if splat.may_crowd {
         let list = TileList::Crowded;

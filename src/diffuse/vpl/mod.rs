@@ -81,7 +81,7 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
     let graph = &mut *cx.graph;
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
     let first_bounce = sample::sample(graph, inputs);
-    let rays = Rays::new(graph, inputs, first_bounce);
+    let rays = Rays::new(graph, inputs);
     let vpls = paths::with_bounces(graph, inputs, &rays, first_bounce);
     let visibility = Visibility::new(graph, inputs, rays, vpls);
     let mut made = Made { diffuse, vpls, invocations: None, list: None };

@@ -1,6 +1,5 @@
 //! Whether light from a VPL may be blocked: not at all, by imperfect shadow maps, or by rays.
 
-use ash::vk;
 use glam::DVec3;
 
 use super::inputs::VplInputs;
@@ -46,8 +45,8 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// Of a frame that traces none, buffers that stand for what is not there.
-    pub(super) fn new(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, vpls: BufferRef<[f32; 4]>) -> Rays {
+    /// Nothing in a frame that traces none.
+    pub(super) fn new(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Rays {
         let (radius, origin) = (inputs.data.radius, inputs.data.origin);
         let shift = inputs.traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
         let rays = VplRays { shift, offset: (radius * OFFSET) as f32, radius: radius as f32 };
@@ -71,24 +70,21 @@ impl Rays {
                     vertex_colors: u32::from(traced.facts.vertex_colors),
                 }
             }
-            None => {
-                let (floats, words) = (vpls.texels(vk::Format::R32G32B32A32_SFLOAT), inputs.geometry.instances.clone());
-                Rays {
-                    rays,
-                    bvh_nodes: words.clone(),
-                    bvh_triangles: floats.clone(),
-                    triangles: words.clone(),
-                    corner_colors: floats.clone(),
-                    corner_texcoords: floats.clone(),
-                    materials: words.clone(),
-                    material_textures: words.clone(),
-                    texture_table: words.clone(),
-                    texels: floats,
-                    sobol: words,
-                    alpha_masks: 0,
-                    vertex_colors: 0,
-                }
-            }
+            None => Rays {
+                rays,
+                bvh_nodes: TexelBuffer::absent(),
+                bvh_triangles: TexelBuffer::absent(),
+                triangles: TexelBuffer::absent(),
+                corner_colors: TexelBuffer::absent(),
+                corner_texcoords: TexelBuffer::absent(),
+                materials: TexelBuffer::absent(),
+                material_textures: TexelBuffer::absent(),
+                texture_table: TexelBuffer::absent(),
+                texels: TexelBuffer::absent(),
+                sobol: TexelBuffer::absent(),
+                alpha_masks: 0,
+                vertex_colors: 0,
+            },
         }
     }
 }
@@ -101,7 +97,7 @@ impl Visibility {
         rays: Rays,
         vpls: BufferRef<[f32; 4]>,
     ) -> Visibility {
-        let none = vpls.texels(vk::Format::R32G32B32A32_SFLOAT);
+        let none = TexelBuffer::absent();
         let (kind, ism_resolution, ism_maps) = match inputs.options.visibility {
             VplVisibility::None => (NONE, 1, none),
             VplVisibility::Ism => {

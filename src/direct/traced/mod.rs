@@ -80,22 +80,16 @@ impl TracedFrame<'_> {
         graph.image(name, vk::Format::R32G32B32A32_SFLOAT, self.buffer.size)
     }
 
-    /// What was found before, or an image that stands for nothing, and whether it is real.
-    fn before(&self, found: Option<ImageRef>) -> (SampledImage, u32) {
-        (found.unwrap_or(self.buffer.depth).sampled(), u32::from(found.is_some()))
-    }
-
     fn punctual(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.punctual");
         let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
         let (scene, light_count) = (&self.bindings, self.scene.punctual_count);
         let pass = Punctual {
             camera: self.buffer.camera.clone(),
             depth: self.buffer.depth.sampled(),
             surface: self.buffer.surface.sampled(),
             specular: specular.sampled(),
-            before,
+            before: SampledImage::of(found),
             direct: direct.write(),
             bvh_nodes: scene.bvh_nodes.clone(),
             bvh_triangles: scene.bvh_triangles.clone(),
@@ -108,8 +102,7 @@ impl TracedFrame<'_> {
             texture_table: scene.texture_table.clone(),
             texels: scene.texels.clone(),
             specular_lobes: has_specular,
-            transmissive: 0,
-            adds,
+            adds: u32::from(found.is_some()),
             alpha_masks: u32::from(self.scene.facts.alpha_masked),
             vertex_colors: u32::from(self.scene.facts.vertex_colors),
             push: PunctualPush { shift: self.shift, light_count },
@@ -121,14 +114,13 @@ impl TracedFrame<'_> {
     fn emitters(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.emitters");
         let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
         let (scene, emitter_count) = (&self.bindings, self.scene.emissive_count);
         let pass = Emitters {
             camera: self.buffer.camera.clone(),
             depth: self.buffer.depth.sampled(),
             surface: self.buffer.surface.sampled(),
             specular: specular.sampled(),
-            before,
+            before: SampledImage::of(found),
             direct: direct.write(),
             bvh_nodes: scene.bvh_nodes.clone(),
             bvh_triangles: scene.bvh_triangles.clone(),
@@ -143,7 +135,7 @@ impl TracedFrame<'_> {
             texels: scene.texels.clone(),
             specular_lobes: has_specular,
             transmissive: 0,
-            adds,
+            adds: u32::from(found.is_some()),
             emissive_textures: u32::from(self.scene.emissive_textures),
             alpha_masks: u32::from(self.scene.facts.alpha_masked),
             vertex_colors: u32::from(self.scene.facts.vertex_colors),
@@ -161,14 +153,13 @@ impl TracedFrame<'_> {
     fn directions(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.directions");
         let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
         let scene = &self.bindings;
         let pass = Directions {
             camera: self.buffer.camera.clone(),
             depth: self.buffer.depth.sampled(),
             surface: self.buffer.surface.sampled(),
             specular: specular.sampled(),
-            before,
+            before: SampledImage::of(found),
             direct: direct.write(),
             bvh_nodes: scene.bvh_nodes.clone(),
             bvh_triangles: scene.bvh_triangles.clone(),
@@ -182,7 +173,7 @@ impl TracedFrame<'_> {
             texels: scene.texels.clone(),
             specular_lobes: has_specular,
             transmissive: 0,
-            adds,
+            adds: u32::from(found.is_some()),
             emissive_textures: u32::from(self.scene.emissive_textures),
             finds_emitters: u32::from(self.scene.emissive_count > 0),
             alpha_masks: u32::from(self.scene.facts.alpha_masked),
