@@ -2,12 +2,12 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
-#include "path/emissive_points.glsl"
+#include "lib/emissive_points.glsl"
 
 // What the sky adds to the slot `direct` of one pixel, estimated from directions drawn as the surface scatters (where it is diffuse
 // alone: by the cosine), and what emissive surfaces add that such a direction meets:
 //
-//   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L / p_k        p: path/lobes.glsl
+//   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L / p_k        p: lib/lobes.glsl
 //
 // The light of emitters is weighted against the points that `emitters` draws, lobe by lobe, by the power heuristic.
 

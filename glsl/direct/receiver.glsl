@@ -7,7 +7,7 @@
 #include "lib/pixels.glsl"
 #include "lib/sobol.glsl"
 #include "lib/surface_packing.glsl"
-#include "path/lobes.glsl"
+#include "lib/lobes.glsl"
 
 // 1: `before` holds what earlier kernels found.
 layout(constant_id = 2) const uint ADDS = 0u;
@@ -15,8 +15,8 @@ layout(constant_id = 2) const uint ADDS = 0u;
 layout(set = 0, binding = 0) uniform sampler2D before;
 layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D direct;
 
-#include "lib/ray_offset.glsl"
-#include "path/cutouts.glsl"
+#include "lib/pixel_rays.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 struct Receiver {
@@ -25,19 +25,13 @@ struct Receiver {
     vec3 ray_origin;
 };
 
-// A position from the depth buffer is off its surface by rounding of the depth, which is interpolated across the triangle: a few units in
-// the last place of the distance.
-const float DEPTH_SLACK = 1.0 / 131072.0;
-
 Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
     vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
     vec4 lobe = SPECULAR_LOBES != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
     Receiver receiver;
     receiver.surface = unpack_surface(position_rs + shift, texelFetch(surface, pixel, 0), lobe);
     receiver.to_eye = direction_to_eye(camera, position_rs);
-    float away = camera.depth_range > 0.0 ? camera.depth_range : distance(camera.position_rs, position_rs);
-    vec3 normal = receiver.surface.geometric_normal;
-    receiver.ray_origin = offset_ray_origin(receiver.surface.position_rs, normal) + normal * (DEPTH_SLACK * away);
+    receiver.ray_origin = pixel_ray_origin(position_rs, shift, receiver.surface.geometric_normal);
     return receiver;
 }
 
@@ -45,11 +39,6 @@ Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
 float power_heuristic(float density, float other) {
     float ratio = other / density;
     return 1.0 / (1.0 + ratio * ratio);
-}
-
-// The sequence of samples of a pixel: the same in every frame.
-uint seed_of_pixel(ivec2 pixel) {
-    return mix_bits(uint(pixel.y) << 16 | uint(pixel.x));
 }
 
 // How the receiver scatters, in the frame of its shading normal.

@@ -1,4 +1,4 @@
-// What shines on the scene as rays meet it (path/emitters.glsl, lib/lights.glsl).
+// What shines on the scene as rays meet it (lib/emitters.glsl, lib/lights.glsl).
 // group: bindings 48 to 55, constants 40 to 43
 #ifndef GROUPS_SCENE_LIGHTS
 #define GROUPS_SCENE_LIGHTS

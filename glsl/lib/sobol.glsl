@@ -20,6 +20,11 @@ uint seed_of(uint seed, uint stream) {
     return mix_bits(seed ^ (stream * 0x9E3779B9u + 0x85EBCA6Bu));
 }
 
+// The sequence of samples of a pixel: the same in every frame.
+uint seed_of_pixel(ivec2 pixel) {
+    return mix_bits(uint(pixel.y) << 16 | uint(pixel.x));
+}
+
 // Permutes numbers whose bits are reversed so that each bit depends on those below it alone: an Owen scrambling.
 uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3D20ADEAu;

@@ -5,7 +5,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
-#include "path/emitters.glsl"
+#include "lib/emitters.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 
@@ -19,7 +19,7 @@
 layout(local_size_x = 64) in;
 
 #include "lib/ray_offset.glsl"
-#include "path/emissive_points.glsl"
+#include "lib/emissive_points.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;

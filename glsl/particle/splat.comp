@@ -19,7 +19,7 @@ layout(push_constant, scalar) uniform Push {
     uint reserved;
 } push;
 
-#include "path/cutouts.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void add(uint place, float light) {

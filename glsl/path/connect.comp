@@ -20,7 +20,7 @@ layout(push_constant, scalar) uniform Push {
     uint reserved;
 } push;
 
-#include "path/cutouts.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void main() {

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) writeonly buffer HitBlock { vec4 path_hits[]; };
 
-#include "path/cutouts.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void main() {

@@ -4,7 +4,7 @@
 #include "groups/scene_lights.glsl"
 #include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
-#include "path/emitters.glsl"
+#include "lib/emitters.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 #include "path/vertex.glsl"
@@ -23,7 +23,7 @@ layout(set = 0, binding = 1) writeonly buffer ConnectionLightBlock { vec4 connec
 layout(set = 0, binding = 2) buffer QueueBlock { uint connections[]; };
 
 #include "lib/ray_offset.glsl"
-#include "path/emissive_points.glsl"
+#include "lib/emissive_points.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;

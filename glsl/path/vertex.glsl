@@ -9,7 +9,7 @@
 #define PATH_VERTEX
 
 #include "lib/octahedral.glsl"
-#include "path/lobes.glsl"
+#include "lib/lobes.glsl"
 
 const int VERTEX_TEXELS = SPECULAR_LOBES != 0u ? 5 : 2;
 

@@ -5,9 +5,9 @@
 #include "photons/beam.glsl"
 #include "photons/random.glsl"
 #include "photons/surface_texel.glsl"
-#include "path/lobes.glsl"
+#include "lib/lobes.glsl"
 
-// Sends one photon on from a specular surface: reflection or transmission by their shares, a direction by the lobe's density (glsl/path/lobes.glsl;
+// Sends one photon on from a specular surface: reflection or transmission by their shares, a direction by the lobe's density (glsl/lib/lobes.glsl;
 // Quyen 2014, section 3.3.1.2, has Phong's lobe and rolls a die for absorption, where here the photon carries less),
 //
 //   Φ ← Φ · f·|cos|/p · |l·n_s||v·n_g| / (|l·n_g||v·n_s|)

@@ -15,7 +15,7 @@ layout(push_constant, scalar) uniform Push {
     uint stage;
 } push;
 
-#include "path/cutouts.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "photons/records.glsl"
 

@@ -18,7 +18,7 @@ layout(set = 0, binding = 1) writeonly buffer Hits { vec4 hits[]; };
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
 
 #include "lib/ray_offset.glsl"
-#include "path/cutouts.glsl"
+#include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
 void main() {

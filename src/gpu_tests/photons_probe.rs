@@ -4,16 +4,15 @@ use glam::{DVec3, Vec3};
 
 use super::scenes::view;
 use super::session::Session;
-use crate::caustics::photons::{PhotonInputs, TracedPhotons, trace_all};
-use crate::frame::gbuffer::{View, gbuffer};
-use crate::frame::geometry::Geometry;
+use crate::caustics::photons::{Photons as Method, TracedPhotons, trace_all};
 use crate::frame::light_set::LightSet;
-use crate::frame::light_views::light_views;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::twins::unpack_direction;
 use crate::graph::{Graph, Store};
-use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
+use crate::method::{FrameCx, Method as _};
+use crate::renderer::declare::Shared;
+use crate::renderer::{FrameRequest, PassTiming, Preset, Settings, Technique, Timing};
 use crate::scene::Scene;
 
 /// The hybrid technique with these changes; its photons are traced through the hierarchy.
@@ -119,25 +118,12 @@ impl OnDevice<'_> {
 
     fn frame(&mut self, timing: Timing) -> (Reads, Vec<PassTiming>, TracedPhotons) {
         let OnDevice { scene, settings, store, data, set, traced } = self;
-        let facts = scene.facts();
         let mut graph = Graph::new(store);
-        let geometry = Geometry::import(&mut graph, data);
-        let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
-        let view = View { camera, size: [8, 8], sky: [0.0; 3], emission: false };
-        let buffer = gbuffer(&mut graph, data, &geometry, &facts, &view);
-        let lights = light_views(&mut graph, data, &geometry, set, false);
-        let inputs = PhotonInputs {
-            buffer: &buffer,
-            data,
-            geometry: &geometry,
-            facts: &facts,
-            camera: &camera,
-            set,
-            lights: &lights,
-            traced: Some(traced),
-            options: &settings.photons,
-        };
-        let made = trace_all(&mut graph, &inputs);
+        let request = FrameRequest::new([8, 8], view(DVec3::ONE, DVec3::ZERO));
+        let shared = Shared::declare(&mut graph, scene, data, &request);
+        let inputs = Method::inputs(&settings.photons);
+        let frame = shared.inputs(&mut graph, data, set, Some(traced), inputs);
+        let made = trace_all(&mut FrameCx::new(&mut graph, &frame, inputs), &settings.photons);
         let reads = [
             graph.read_back_buffer(made.landed.photons),
             graph.read_back_buffer(made.landed.counts),

@@ -63,7 +63,7 @@ pub(crate) fn wanted_methods(
     let method = |slot: Slot| {
         let Some(Filler::Method(method)) = settings.methods.filler(slot) else { return None };
         let inputs = (method.inputs)(settings);
-        let unlit = if inputs.light_views() { set.lights.is_empty() } else { !facts.lit() };
+        let unlit = inputs.light_views() && set.lights.is_empty();
         let skipped = unlit.then_some("no light").or_else(|| (method.skip)(settings, facts));
         Some(Wanted { method, inputs, skipped })
     };

@@ -3,14 +3,14 @@
 use ash::vk;
 
 use super::choose::{CHOICE_EMIT, Choice};
-use super::inputs::PhotonInputs;
-use super::options::PhotonFootprint;
+use super::options::{PhotonFootprint, PhotonOptions};
 use super::records::{PhotonRays, STAGE_WORDS};
 use super::views::SpecularViews;
 use crate::frame::light_set::LightSet;
 use crate::frame::view_layout::TILE;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
+use crate::method::FrameCx;
 use crate::shaders::photons::{Emit, EmitPush, Scatter, ScatterPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -48,17 +48,17 @@ fn views_of_tiles(set: &LightSet) -> (Vec<u32>, u32) {
 }
 
 pub(crate) fn emit(
-    graph: &mut Graph<'_>,
-    inputs: &PhotonInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
     views: &SpecularViews,
     choice: &Choice,
     made: Arrivals,
 ) {
-    let (tiles, tiles_per_row) = views_of_tiles(inputs.set);
+    let (tiles, tiles_per_row) = views_of_tiles(cx.frame.set);
+    let (lights, graph) = (cx.lights(), &mut *cx.graph);
     let tile_views = graph.upload("photons.tile_views", &tiles, Dependence::LIGHTS);
     let pass = Emit {
-        geometry: inputs.geometry.clone(),
-        light_views: inputs.lights.group.clone(),
+        geometry: cx.frame.geometry.clone(),
+        light_views: lights.group.clone(),
         mask: views.mask.sampled(),
         levels: choice.levels.clone(),
         pyramid: choice.pyramid.texels(WORDS),
@@ -70,15 +70,15 @@ pub(crate) fn emit(
         arrivals: made.arrivals.write(),
         surfaces: made.surfaces.write(),
         arrival_beams: made.beams.write(),
-        push: EmitPush { tiles_per_row, radius: inputs.data.radius as f32 },
+        push: EmitPush { tiles_per_row, radius: cx.frame.data.radius as f32 },
     };
     graph.pass("caustics/photons/emit", pass).threads_indirect(choice.choice, CHOICE_EMIT);
 }
 
 /// Sends the photons that arrived on as the rays of a stage.
 pub(crate) fn scatter(
-    graph: &mut Graph<'_>,
-    inputs: &PhotonInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
+    options: &PhotonOptions,
     choice: &Choice,
     arrived: Arrivals,
     rays: &PhotonRays,
@@ -92,15 +92,15 @@ pub(crate) fn scatter(
         beams: rays.beams.write(),
         counts: choice.counts.read_write(),
         specular_lobes: 1,
-        transmissive: u32::from(inputs.facts.transmissive),
+        transmissive: u32::from(cx.frame.facts.transmissive),
         first: u32::from(rays.stage == 0),
         push: ScatterPush {
             stage: rays.stage as u32,
             capacity: rays.capacity,
-            beams_decide: u32::from(inputs.options.footprint == PhotonFootprint::Beam),
+            beams_decide: u32::from(options.footprint == PhotonFootprint::Beam),
         },
     };
-    graph
+    cx.graph
         .pass(&format!("caustics/photons/scatter.{}", rays.stage), pass)
         .count("rays", choice.counts, Choice::count_word(rays.stage))
         .threads_indirect(choice.arrival_counts, STAGE_WORDS * rays.stage);

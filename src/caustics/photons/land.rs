@@ -5,11 +5,10 @@ use ash::vk;
 use super::bvh::shift;
 use super::choose::Choice;
 use super::emit::Arrivals;
-use super::inputs::PhotonInputs;
-use super::options::PhotonFootprint;
+use super::options::{PhotonFootprint, PhotonOptions};
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
 use crate::frame::rays::TracedScene;
-use crate::graph::Graph;
+use crate::method::FrameCx;
 use crate::shaders::groups::SceneRays;
 use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
 
@@ -19,15 +18,15 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Lands the photons of a stage. `scene`: what they were traced through, where that was triangles.
 pub(crate) fn land(
-    graph: &mut Graph<'_>,
-    inputs: &PhotonInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
+    options: &PhotonOptions,
     scene: Option<(&TracedScene, &SceneRays)>,
     choice: &Choice,
     rays: &PhotonRays,
     lists: (&LandedPhotons, Arrivals),
 ) {
     let (landed, next) = lists;
-    let data = inputs.data;
+    let (graph, data, geometry) = (&mut *cx.graph, cx.frame.data, cx.frame.geometry);
     let name = format!("caustics/photons/land.{}", rays.stage);
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
@@ -40,17 +39,17 @@ pub(crate) fn land(
         capacity: rays.capacity,
         landed_capacity: landed.capacity,
         radius: data.radius as f32,
-        disc_scale: match inputs.options.footprint {
-            PhotonFootprint::Way => (inputs.options.radius * data.area.sqrt() / data.radius) as f32,
-            PhotonFootprint::Beam => inputs.options.radius as f32,
+        disc_scale: match options.footprint {
+            PhotonFootprint::Way => (options.radius * data.area.sqrt() / data.radius) as f32,
+            PhotonFootprint::Beam => options.radius as f32,
         },
-        beams_decide: u32::from(inputs.options.footprint == PhotonFootprint::Beam),
+        beams_decide: u32::from(options.footprint == PhotonFootprint::Beam),
     };
     let pass = match scene {
         None => graph.pass(
             &name,
             Land {
-                geometry: inputs.geometry.clone(),
+                geometry: geometry.clone(),
                 rays: rays.rays.texels(RECORDS),
                 hits: rays.hits.texels(RECORDS),
                 choice: choice.choice.texels(WORDS),
@@ -69,7 +68,7 @@ pub(crate) fn land(
             &name,
             LandTraced {
                 scene_rays: scene_rays.clone(),
-                geometry: inputs.geometry.clone(),
+                geometry: geometry.clone(),
                 rays: rays.rays.texels(RECORDS),
                 hits: rays.hits.texels(RECORDS),
                 choice: choice.choice.texels(WORDS),

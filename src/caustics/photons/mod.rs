@@ -9,7 +9,6 @@ mod choose;
 mod discs;
 mod emit;
 mod grid;
-mod inputs;
 mod land;
 mod layers;
 pub(crate) mod lines;
@@ -27,11 +26,10 @@ mod upsample;
 mod views;
 
 use self::emit::Arrivals;
-pub(crate) use self::inputs::PhotonInputs;
 use self::options::{PhotonOptions, PhotonTracing};
 use self::records::{LandedPhotons, PhotonRays};
 use self::splat::{SplatInputs, splat};
-use crate::graph::Graph;
+use crate::frame::inputs::FrameInputs;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -70,22 +68,11 @@ impl Method for Photons {
     }
 
     fn declare(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> Result<Option<ImageRef>, Error> {
-        let inputs = PhotonInputs {
-            buffer: cx.frame.surface,
-            data: cx.frame.data,
-            geometry: cx.frame.geometry,
-            facts: cx.frame.facts,
-            camera: cx.frame.camera,
-            set: cx.frame.set,
-            lights: cx.lights(),
-            traced: cx.rays(),
-            options,
-        };
-        let traced = trace_all(cx.graph, &inputs);
+        let traced = trace_all(cx, options);
         let splatted = SplatInputs {
-            buffer: inputs.buffer,
+            buffer: cx.frame.surface,
             options,
-            length: inputs.data.radius,
+            length: cx.frame.data.radius,
             tiles_at_once: sums::TILES_AT_ONCE,
         };
         Ok(Some(splat(cx.graph, &splatted, &traced.landed)))
@@ -110,47 +97,42 @@ pub(crate) struct TracedPhotons {
 
 /// Photons from the specular surfaces that lights see to where they land. At most `max`, and as many as fit into one buffer if all land at
 /// every bounce.
-pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> TracedPhotons {
-    let options = inputs.options;
+pub(crate) fn trace_all(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> TracedPhotons {
+    let FrameInputs { data, geometry, camera, set, .. } = *cx.frame;
     let stages = options.bounces.max(1) as usize;
     let capacity = options
         .max
         .min(LARGEST_BUFFER / ARRIVAL_BYTES)
         .min(LARGEST_BUFFER / DISC_BYTES / options.bounces.max(1))
         .max(1);
-    let views = views::specular_views(graph, inputs);
-    let choice = choose::choose(graph, inputs.set, &views, capacity, stages);
-    let landed = LandedPhotons::declare(graph, choice.counts, stages, capacity * options.bounces.max(1));
-    let arrivals = Arrivals::declare(graph, capacity);
+    let views = views::specular_views(cx);
+    let choice = choose::choose(cx.graph, set, &views, capacity, stages);
+    let landed = LandedPhotons::declare(cx.graph, choice.counts, stages, capacity * options.bounces.max(1));
+    let arrivals = Arrivals::declare(cx.graph, capacity);
     let by_triangles = options.trace == PhotonTracing::Bvh;
     let lists = (!by_triangles).then(|| {
         lists::build(
-            graph,
-            &scene_lists::ListInputs {
-                data: inputs.data,
-                geometry: inputs.geometry,
-                camera: Some(inputs.camera),
-                options,
-            },
+            cx.graph,
+            &scene_lists::ListInputs { data, geometry, camera: Some(camera), options },
         )
     });
-    let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.rays(graph)));
+    let scene = cx.rays().filter(|_| by_triangles).map(|traced| (traced, traced.rays(cx.graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
-    emit::emit(graph, inputs, &views, &choice, arrivals);
-    let all_rays = PhotonRays::declare(graph, 0, capacity);
+    emit::emit(cx, &views, &choice, arrivals);
+    let all_rays = PhotonRays::declare(cx.graph, 0, capacity);
     let mut rays = all_rays;
     for stage in 0..stages {
         rays = PhotonRays { stage, ..all_rays };
-        emit::scatter(graph, inputs, &choice, arrivals, &rays);
+        emit::scatter(cx, options, &choice, arrivals, &rays);
         match (through, lists) {
-            (Some((traced, bindings)), _) => bvh::trace(graph, inputs.data, traced, bindings, &rays, choice.counts),
+            (Some((traced, bindings)), _) => bvh::trace(cx.graph, data, traced, bindings, &rays, choice.counts),
             (None, Some(lists)) if options.trace == PhotonTracing::Lines => {
-                lines::trace(graph, &lists, &rays, choice.counts);
+                lines::trace(cx.graph, &lists, &rays, choice.counts);
             }
-            (None, Some(lists)) => march::trace(graph, &lists, &rays, choice.counts),
+            (None, Some(lists)) => march::trace(cx.graph, &lists, &rays, choice.counts),
             (None, None) => unreachable!("the hierarchy is there for a method that says it sends rays"),
         }
-        land::land(graph, inputs, through, &choice, &rays, (&landed, arrivals));
+        land::land(cx, options, through, &choice, &rays, (&landed, arrivals));
     }
     TracedPhotons {
         landed,

@@ -5,12 +5,12 @@
 
 use ash::vk;
 
-use super::inputs::PhotonInputs;
 use crate::frame::geometry::{Attributes, draw_list};
 use crate::frame::light_views::draw_views;
 use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::graph::bindings::ImageRef;
-use crate::graph::{ClearColor, Graph};
+use crate::graph::ClearColor;
+use crate::method::FrameCx;
 use crate::shaders::photons::{Specular, SpecularPush, SpecularTextured, SpecularTexturedPush};
 use crate::vulkan::{DepthState, RasterState};
 
@@ -24,8 +24,9 @@ pub(crate) struct SpecularViews {
     pub(crate) layer: ImageRef,
 }
 
-pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> SpecularViews {
-    let PhotonInputs { data, geometry, set, lights, .. } = *inputs;
+pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
+    let (data, geometry, set, lights) = (cx.frame.data, cx.frame.geometry, cx.frame.set, cx.lights());
+    let graph = &mut *cx.graph;
     let size = set.atlas.size.map(|side| side.max(1));
     let made = SpecularViews {
         mask: graph.image("photons.mask", vk::Format::R32_SFLOAT, size),

@@ -5,12 +5,13 @@
 
 use ash::vk;
 
-use super::inputs::{VplInputs, vpl_count};
 use super::pyramid::{Pyramid, signed};
 use super::regions::{VALID, flattened_size};
+use super::sample::vpl_count;
 use super::visibility::{TRACED, Visibility};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
+use crate::method::FrameCx;
 use crate::shaders::types::VplRange;
 use crate::shaders::vpl::{
     GatherPixels, GatherPixelsPush, GatherRegions, GatherRegionsPush, GatherStencil, GatherStencilPush,
@@ -37,13 +38,12 @@ fn ranges(name: &str, vpl_count: u32, visibility: &Visibility) -> Vec<(String, V
 
 /// The slot, gathered at every pixel.
 pub(super) fn gather_pixels(
-    graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
     vpls: BufferRef<[f32; 4]>,
     visibility: &Visibility,
     diffuse: ImageRef,
 ) {
-    let buffer = inputs.buffer;
+    let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let [width, height] = buffer.size;
     graph.clear_image("diffuse/vpl/clear", diffuse, BLACK);
     for (name, range) in ranges("diffuse/vpl/gather-pixels", vpl_count(vpls), visibility) {
@@ -65,14 +65,13 @@ pub(super) const REGIONS_PER_GROUP: u32 = 128;
 
 /// Irradiance of the regions on the list, in the flattened image; alpha is 0 where there is none.
 pub(super) fn gather_list(
-    graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
     vpls: BufferRef<[f32; 4]>,
     visibility: &Visibility,
     pyramid: &Pyramid,
     list: BufferRef<u32>,
 ) -> ImageRef {
-    let buffer = inputs.buffer;
+    let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let irradiance = flattened(graph, buffer.size);
     graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, BLACK);
     for (name, range) in ranges("diffuse/vpl/gather-regions", vpl_count(vpls), visibility) {
@@ -98,14 +97,13 @@ pub(super) fn gather_list(
 
 /// The same where the stencil is marked. Returns the count of the first pass's invocations besides.
 pub(super) fn gather_stencil(
-    graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
     vpls: BufferRef<[f32; 4]>,
     visibility: &Visibility,
     pyramid: &Pyramid,
     stencil: ImageRef,
 ) -> (ImageRef, BufferRef<u32>) {
-    let buffer = inputs.buffer;
+    let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
     graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);

@@ -6,8 +6,8 @@
 
 use ash::vk;
 
-use super::inputs::vpl_count;
 use super::options::VplOptions;
+use super::sample::vpl_count;
 use crate::frame::geometry::Geometry;
 use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::{BufferRef, TexelBuffer};

@@ -1,7 +1,6 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
-mod inputs;
 pub(crate) mod interpolate;
 mod ism;
 pub(crate) mod options;
@@ -13,7 +12,6 @@ mod visibility;
 
 use ash::vk;
 
-use self::inputs::VplInputs;
 use self::options::{VplOptions, VplShading, VplVisibility};
 use self::visibility::Visibility;
 use crate::graph::bindings::{BufferRef, ImageRef};
@@ -68,47 +66,38 @@ pub(crate) struct Made {
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
-    let inputs = &VplInputs {
-        buffer: cx.frame.surface,
-        data: cx.frame.data,
-        geometry: cx.frame.geometry,
-        set: cx.frame.set,
-        lights: cx.lights(),
-        traced: cx.rays(),
-        options,
-    };
-    let graph = &mut *cx.graph;
-    let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
-    let first_bounce = sample::sample(graph, inputs);
-    let unblocked = Visibility::new(graph, inputs);
-    let vpls = paths::with_bounces(graph, inputs, &unblocked, first_bounce);
-    let visibility = unblocked.of(graph, inputs, vpls);
+    let buffer = cx.frame.surface;
+    let diffuse = cx.graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
+    let first_bounce = sample::sample(cx, options);
+    let unblocked = Visibility::new(cx);
+    let vpls = paths::with_bounces(cx, options, &unblocked, first_bounce);
+    let visibility = unblocked.of(cx, options, vpls);
     let mut made = Made { diffuse, vpls, invocations: None, list: None };
-    let level_count = pyramid::level_count(inputs.buffer.size, inputs.options.levels);
-    let shading = match inputs.options.shading {
+    let level_count = pyramid::level_count(buffer.size, options.levels);
+    let shading = match options.shading {
         // An image so wide that its levels do not fit beside each other is gathered pixel by pixel.
-        _ if level_count == 1 || regions::flattened_size(inputs.buffer.size)[0] > graph.longest_side() => {
+        _ if level_count == 1 || regions::flattened_size(buffer.size)[0] > cx.graph.longest_side() => {
             VplShading::Pixels
         }
-        VplShading::Auto if graph.runs_on_cpu() => VplShading::Compute,
+        VplShading::Auto if cx.graph.runs_on_cpu() => VplShading::Compute,
         VplShading::Auto => VplShading::Stencil,
         chosen => chosen,
     };
     if shading == VplShading::Pixels {
-        gather::gather_pixels(graph, inputs, vpls, &visibility, diffuse);
+        gather::gather_pixels(cx, vpls, &visibility, diffuse);
         return made;
     }
     let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
-    let pyramid = pyramid::pyramid(graph, inputs.buffer, inputs.options, level_count, listed);
+    let pyramid = pyramid::pyramid(cx.graph, buffer, options, level_count, listed);
     made.list = pyramid.list;
     let irradiance = if let Some(list) = pyramid.list {
-        gather::gather_list(graph, inputs, vpls, &visibility, &pyramid, list)
+        gather::gather_list(cx, vpls, &visibility, &pyramid, list)
     } else {
-        let stencil = regions::mark(graph, inputs, &pyramid);
-        let (irradiance, invocations) = gather::gather_stencil(graph, inputs, vpls, &visibility, &pyramid, stencil);
+        let stencil = regions::mark(cx, &pyramid);
+        let (irradiance, invocations) = gather::gather_stencil(cx, vpls, &visibility, &pyramid, stencil);
         made.invocations = Some(invocations);
         irradiance
     };
-    interpolate::interpolate(graph, inputs.buffer, inputs.options, &pyramid, irradiance, diffuse);
+    interpolate::interpolate(cx.graph, buffer, options, &pyramid, irradiance, diffuse);
     made
 }

@@ -6,10 +6,10 @@
 
 use ash::vk;
 
-use super::inputs::VplInputs;
+use super::options::VplOptions;
 use super::visibility::Visibility;
-use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
+use crate::method::FrameCx;
 use crate::shaders::types;
 use crate::shaders::vpl::{Copy, CopyPush, PathHits, PathHitsPush, PathVpls, PathVplsPush};
 
@@ -27,15 +27,16 @@ fn counts(first: u32, bounces: u32) -> Vec<u32> {
 
 /// Declares the passes that add the bounces beyond the first to `first_bounce`; returns the VPLs of all.
 pub(super) fn with_bounces(
-    graph: &mut Graph<'_>,
-    inputs: &VplInputs<'_>,
+    cx: &mut FrameCx<'_, '_>,
+    options: &VplOptions,
     visibility: &Visibility,
     first_bounce: BufferRef<[f32; 4]>,
 ) -> BufferRef<[f32; 4]> {
-    if inputs.traced.is_none() || inputs.options.bounces <= 1 {
+    if cx.rays().is_none() || options.bounces <= 1 {
         return first_bounce;
     }
-    let counts = counts(inputs.options.count, inputs.options.bounces);
+    let graph = &mut *cx.graph;
+    let counts = counts(options.count, options.bounces);
     let all: u32 = counts.iter().sum();
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
     let texel_count = 2 * counts[0];

@@ -2,10 +2,9 @@
 
 use ash::vk;
 
-use super::inputs::VplInputs;
 use super::pyramid::{Pyramid, signed};
-use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
+use crate::method::FrameCx;
 use crate::shaders::vpl::{MarkRegions, MarkRegionsPush};
 use crate::vulkan::{RasterState, StencilState};
 
@@ -18,11 +17,12 @@ pub(crate) fn flattened_size(size: [u32; 2]) -> [u32; 2] {
 }
 
 /// The stencil image with [`VALID`] where a region is valid.
-pub(super) fn mark(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, pyramid: &Pyramid) -> ImageRef {
-    let size = inputs.buffer.size;
+pub(super) fn mark(cx: &mut FrameCx<'_, '_>, pyramid: &Pyramid) -> ImageRef {
+    let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
+    let size = buffer.size;
     let stencil = graph.image("vpl.stencil", vk::Format::S8_UINT, flattened_size(size));
     let pass = MarkRegions {
-        surface: inputs.buffer.group.clone(),
+        surface: buffer.group.clone(),
         planes: pyramid.planes.sampled(),
         push: MarkRegionsPush { size: signed(size), level_count: pyramid.level_count.cast_signed() },
     };

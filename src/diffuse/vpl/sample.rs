@@ -2,9 +2,10 @@
 
 use ash::vk;
 
-use super::inputs::VplInputs;
+use super::options::VplOptions;
+use crate::graph::Dependence;
 use crate::graph::bindings::BufferRef;
-use crate::graph::{Dependence, Graph};
+use crate::method::FrameCx;
 use crate::shaders::types::ViewShare;
 use crate::shaders::vpl::{BlockFlux, BlockFluxPush, BlockSums, Share, SharePush, Vpls, VplsPush};
 
@@ -12,11 +13,12 @@ use crate::shaders::vpl::{BlockFlux, BlockFluxPush, BlockSums, Share, SharePush,
 const BLOCK_SIDE: u32 = 8;
 const BLOCKS_PER_TILE: u32 = 4;
 
-/// Declares the passes that make `settings.count` VPLs of two texels each (glsl/lib/vpl.glsl).
-pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef<[f32; 4]> {
-    let VplInputs { set, lights, .. } = inputs;
+/// Declares the passes that make `options.count` VPLs of two texels each (glsl/lib/vpl.glsl).
+pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRef<[f32; 4]> {
+    let (set, lights) = (cx.frame.set, cx.lights());
+    let graph = &mut *cx.graph;
     let (tile_count, view_count) = (set.atlas.tiles.len() as u32, set.atlas.views.len() as u32);
-    let vpl_count = inputs.options.count;
+    let vpl_count = options.count;
     let block_grid = set.atlas.size.map(|side| side.div_ceil(BLOCK_SIDE).max(1));
     let tiles = graph.upload("vpl.tiles", &set.atlas.tiles, Dependence::LIGHTS);
     let blocks = graph.image("vpl.blocks", vk::Format::R32G32B32A32_SFLOAT, block_grid);
@@ -61,4 +63,9 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
     };
     graph.pass("diffuse/vpl/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
     vpls
+}
+
+/// Number of VPLs in a buffer of two texels each.
+pub(super) fn vpl_count(vpls: BufferRef<[f32; 4]>) -> u32 {
+    (vpls.count() / 2) as u32
 }

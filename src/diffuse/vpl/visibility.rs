@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::inputs::VplInputs;
 use super::ism::imperfect_shadow_maps;
-use super::options::VplVisibility as Setting;
+use super::options::{VplOptions, VplVisibility as Setting};
 use crate::graph::bindings::{BufferRef, TexelBuffer};
-use crate::graph::{Dependence, Graph};
+use crate::graph::Dependence;
+use crate::method::FrameCx;
 use crate::shaders::groups::{SceneRays, VplVisibility};
 use crate::shaders::types::VplRays;
 
@@ -28,24 +28,30 @@ pub(super) struct Visibility {
 
 impl Visibility {
     /// Of a frame in which nothing is blocked yet.
-    pub(super) fn new(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> Visibility {
-        let (radius, origin) = (inputs.data.radius, inputs.data.origin);
-        let shift = inputs.traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
+    pub(super) fn new(cx: &mut FrameCx<'_, '_>) -> Visibility {
+        let (radius, origin, traced) = (cx.frame.data.radius, cx.frame.data.origin, cx.rays());
+        let graph = &mut *cx.graph;
+        let shift = traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
         let rays = VplRays { shift, offset: (radius * OFFSET) as f32, radius: radius as f32 };
         let vpl_rays = graph.upload("vpl.rays", &[rays], Dependence::GEOMETRY).uniform();
         let ism_maps = TexelBuffer::absent();
         Visibility {
             group: VplVisibility { ism_maps, vpl_rays, visibility: NONE, ism_resolution: 1 },
-            scene: inputs.traced.map_or_else(SceneRays::absent, |traced| traced.rays(graph)),
+            scene: traced.map_or_else(SceneRays::absent, |traced| traced.rays(graph)),
         }
     }
 
     /// As the settings say, for all of `vpls`.
-    pub(super) fn of(mut self, graph: &mut Graph<'_>, inputs: &VplInputs<'_>, vpls: BufferRef<[f32; 4]>) -> Visibility {
-        match inputs.options.visibility {
+    pub(super) fn of(
+        mut self,
+        cx: &mut FrameCx<'_, '_>,
+        options: &VplOptions,
+        vpls: BufferRef<[f32; 4]>,
+    ) -> Visibility {
+        match options.visibility {
             Setting::None => {}
             Setting::Ism => {
-                let maps = imperfect_shadow_maps(graph, inputs.data, inputs.geometry, vpls, inputs.options);
+                let maps = imperfect_shadow_maps(cx.graph, cx.frame.data, cx.frame.geometry, vpls, options);
                 self.group.visibility = ISM;
                 self.group.ism_resolution = maps.resolution;
                 self.group.ism_maps = maps.texels();

@@ -36,8 +36,8 @@ impl Method for Traced {
         Inputs { rays: Rays::ToLights, ..Inputs::default() }
     }
 
-    fn skip(_: &TracedOptions, _: &Facts) -> Option<&'static str> {
-        None
+    fn skip(_: &TracedOptions, facts: &Facts) -> Option<&'static str> {
+        (!facts.lit()).then_some("no light")
     }
 
     /// The passes that the scene's lights need.

@@ -1,5 +1,5 @@
 //! What next-event estimation and light paths draw lights from: one alias table over punctual lights and emissive triangles, by power
-//! (glsl/path/emitters.glsl).
+//! (glsl/lib/emitters.glsl).
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 // The radiance of points of emissive triangles, before the cosine decides which side shows.
-#ifndef PATH_EMISSIVE_POINTS
-#define PATH_EMISSIVE_POINTS
+#ifndef LIB_EMISSIVE_POINTS
+#define LIB_EMISSIVE_POINTS
 
 #include "groups/scene_lights.glsl"
 #include "groups/scene_rays.glsl"

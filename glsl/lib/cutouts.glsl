@@ -1,7 +1,7 @@
 // Surfaces cut out by their alpha, for kernels that trace rays: whether a hit is on what is left of the surface (glTF 2.0, alphaMode
 // MASK).
-#ifndef PATH_CUTOUTS
-#define PATH_CUTOUTS
+#ifndef LIB_CUTOUTS
+#define LIB_CUTOUTS
 
 #include "groups/scene_rays.glsl"
 #include "lib/texels.glsl"

@@ -2,8 +2,8 @@
 // table (Vose 1991). The sky is not among them: paths that leave the scene find it, and its light is the same everywhere.
 //
 // emitters, one texel (rgba32ui) an entry: threshold · alias · what (EMITTER_TRIANGLE or light, and its number) · probability
-#ifndef PATH_EMITTERS
-#define PATH_EMITTERS
+#ifndef LIB_EMITTERS
+#define LIB_EMITTERS
 
 #include "lib/lights.glsl"
 #include "lib/traced_scene.glsl"

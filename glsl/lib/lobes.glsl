@@ -10,8 +10,8 @@
 //
 // F is the brightest channel's where it takes light from other lobes. Where light passes between media F is taken on the thinner
 // side, and 1 beyond the critical angle, so that it is the same both ways.
-#ifndef PATH_LOBES
-#define PATH_LOBES
+#ifndef LIB_LOBES
+#define LIB_LOBES
 
 #include "lib/brdf.glsl"
 #include "lib/microfacet.glsl"
