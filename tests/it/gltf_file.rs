@@ -1,12 +1,8 @@
 //! Small glTF files made in memory.
 
-#![allow(dead_code, reason = "each test program uses its own part of this")]
-
 use base64::Engine;
-use image::{DynamicImage, ImageBuffer, ImageFormat};
 use irradia::scene::{Scene, SceneError};
 use serde_json::{Value, json};
-use std::io::Cursor;
 
 /// A glTF document with one buffer.
 pub(crate) struct File {
@@ -132,26 +128,28 @@ pub(crate) fn float_bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-fn encode(image: DynamicImage) -> Vec<u8> {
+fn encode([width, height]: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    image.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).expect("it can be encoded");
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().expect("it can be encoded");
+    writer.write_image_data(data).expect("the texels fit");
+    writer.finish().expect("it can be encoded");
     bytes
 }
 
 pub(crate) fn png(width: u32, height: u32, rgba: &[u8]) -> Vec<u8> {
-    encode(DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, rgba.to_vec()).expect("the texels fit")))
+    encode([width, height], png::ColorType::Rgba, png::BitDepth::Eight, rgba)
 }
 
 pub(crate) fn grey_png(grey: &[u8]) -> Vec<u8> {
-    encode(DynamicImage::ImageLuma8(
-        ImageBuffer::from_raw(grey.len() as u32, 1, grey.to_vec()).expect("the texels fit"),
-    ))
+    encode([grey.len() as u32, 1], png::ColorType::Grayscale, png::BitDepth::Eight, grey)
 }
 
 pub(crate) fn png_16(rgba: &[u16]) -> Vec<u8> {
-    encode(DynamicImage::ImageRgba16(
-        ImageBuffer::from_raw(rgba.len() as u32 / 4, 1, rgba.to_vec()).expect("the texels fit"),
-    ))
+    let bytes: Vec<u8> = rgba.iter().flat_map(|value| value.to_be_bytes()).collect();
+    encode([rgba.len() as u32 / 4, 1], png::ColorType::Rgba, png::BitDepth::Sixteen, &bytes)
 }
 
 /// The checksum of PNG chunks.
