@@ -9,6 +9,8 @@ use std::{env, fs};
 
 #[path = "build/generate.rs"]
 mod generate;
+#[path = "build/live.rs"]
+mod live;
 #[path = "build/reflect.rs"]
 mod reflect;
 
@@ -16,8 +18,21 @@ use generate::{CompiledStage, Program};
 use shaderc::{CompileOptions, Compiler, EnvVersion, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
 
 fn main() {
-    println!("cargo::rerun-if-changed=glsl");
+    if let [_, folder, program, interface] = &env::args().collect::<Vec<_>>()[..] {
+        if let Err(message) = answer(Path::new(folder), program, interface) {
+            eprintln!("{message}");
+            exit(1);
+        }
+        return;
+    }
+    // While a debug build takes its shaders from a folder, a change to one of them need not build it anew.
+    println!("cargo::rerun-if-env-changed=IRRADIA_SHADERS");
+    if env::var_os("IRRADIA_SHADERS").is_none() || env::var("PROFILE").is_ok_and(|profile| profile != "debug") {
+        println!("cargo::rerun-if-changed=glsl");
+    }
     println!("cargo::rerun-if-changed=build");
+    let compiler = env::current_exe().expect("the build script knows where it lies");
+    println!("cargo::rustc-env=IRRADIA_SHADER_COMPILER={}", compiler.display());
     let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     if let Err(message) = build(Path::new("glsl"), &out_dir) {
         for line in message.lines() {
@@ -28,6 +43,24 @@ fn main() {
 }
 
 pub(crate) fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
+    let programs = programs(root, |_, _| true)?;
+    for stage in programs.iter().flat_map(|program| &program.stages) {
+        fs::write(out_dir.join(&stage.spirv_file), &stage.spirv)
+            .map_err(|error| format!("{}: {error}", stage.spirv_file))?;
+    }
+    live::write_interfaces(&programs, out_dir)?;
+    let source = generate::generate(&programs)?;
+    fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
+}
+
+/// Compiles one program for a debug build that runs already.
+fn answer(root: &Path, name: &str, interface: &str) -> Result<(), String> {
+    let programs = programs(root, |piece, pass| name == format!("{piece}/{pass}"))?;
+    live::answer(programs.first(), name, interface)
+}
+
+/// Compiles the shaders below `root` whose piece and pass are `wanted`.
+fn programs(root: &Path, wanted: impl Fn(&str, &str) -> bool) -> Result<Vec<Program>, String> {
     let compiler = Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))?;
     let mut programs: BTreeMap<(String, String), Program> = BTreeMap::new();
     for path in shader_files(root)? {
@@ -41,18 +74,20 @@ pub(crate) fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
             "frag" => ("Fragment", ShaderKind::Fragment),
             _ => continue,
         };
+        if !wanted(&piece, &pass) {
+            continue;
+        }
         let source = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let words = compile(&compiler, root, &path, &source, stage_kind)?;
         let stage = reflect::reflect(&words).map_err(|error| format!("{}: {error}", path.display()))?;
+        let spirv = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let spirv_file = format!("{piece}.{pass}.{}.spv", part(path.extension()));
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        fs::write(out_dir.join(&spirv_file), bytes).map_err(|error| format!("{spirv_file}: {error}"))?;
         let new = || Program { piece: piece.clone(), pass: pass.clone(), summary: String::new(), stages: Vec::new() };
         let program = programs.entry((piece.clone(), pass.clone())).or_insert_with(new);
         if program.summary.is_empty() || stage_kind == ShaderKind::Fragment {
             program.summary = summary(&source).unwrap_or_else(|| format!("`glsl/{piece}/{pass}`."));
         }
-        program.stages.push(CompiledStage { kind, spirv_file, stage });
+        program.stages.push(CompiledStage { kind, spirv_file, spirv, stage });
     }
     let mut programs: Vec<Program> = programs.into_values().collect();
     for program in &mut programs {
@@ -60,8 +95,7 @@ pub(crate) fn build(root: &Path, out_dir: &Path) -> Result<(), String> {
             ["Vertex", "Geometry", "Fragment", "Compute"].iter().position(|kind| *kind == stage.kind)
         });
     }
-    let source = generate::generate(&programs)?;
-    fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
+    Ok(programs)
 }
 
 /// All shader files below `root`, in a fixed order, without the includes.

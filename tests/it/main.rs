@@ -9,6 +9,8 @@ mod gltf_meshes;
 mod gltf_scenes;
 mod house;
 mod light_notation;
+#[cfg(debug_assertions)]
+mod live_shaders;
 mod no_vulkan;
 mod output_files;
 mod scene;
