@@ -152,6 +152,43 @@ pub(crate) fn png_16(rgba: &[u16]) -> Vec<u8> {
     encode([rgba.len() as u32 / 4, 1], png::ColorType::Rgba, png::BitDepth::Sixteen, &bytes)
 }
 
+/// A JPEG of 8×8 equal texels: grey if there is one value, else Y, Cb and Cr. Its blocks hold a mean and no more.
+pub(crate) fn jpeg(values: &[u8]) -> Vec<u8> {
+    let count = values.len() as u8;
+    let segment =
+        |marker: u8, content: &[u8]| [&[0xFF, marker], &(content.len() as u16 + 2).to_be_bytes()[..], content].concat();
+    let quantisation = [&[0], &[1; 64][..]].concat();
+    let frame: Vec<u8> = (1..=count).flat_map(|component| [component, 0x11, 0]).collect();
+    let means = [&[0x00, 0, 0, 0, 12], &[0; 12][..], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]].concat(); // four bits each
+    let waves = [&[0x10, 1], &[0; 15][..], &[0]].concat(); // the end of a block, in one bit
+    let scan: Vec<u8> = (1..=count).flat_map(|component| [component, 0]).collect();
+    let mut bits = String::new();
+    for &value in values {
+        let mean = 8 * (i32::from(value) - 128);
+        let width = (i32::BITS - mean.abs().leading_zeros()) as usize;
+        let code = if mean < 0 { mean + (1 << width) - 1 } else { mean };
+        bits += &format!("{width:04b}");
+        if width > 0 {
+            bits += &format!("{code:0width$b}");
+        }
+        bits.push('0');
+    }
+    bits += &"1".repeat(bits.len().next_multiple_of(8) - bits.len());
+    let bytes = bits.as_bytes().chunks(8).map(|bits| bits.iter().fold(0, |byte, bit| byte << 1 | (bit - b'0')));
+    let data: Vec<u8> = bytes.flat_map(|byte| if byte == 0xFF { vec![byte, 0] } else { vec![byte] }).collect();
+    [
+        vec![0xFF, 0xD8],
+        segment(0xDB, &quantisation),
+        segment(0xC0, &[&[8, 0, 8, 0, 8, count], &frame[..]].concat()),
+        segment(0xC4, &means),
+        segment(0xC4, &waves),
+        segment(0xDA, &[&[count], &scan[..], &[0, 63, 0]].concat()),
+        data,
+        vec![0xFF, 0xD9],
+    ]
+    .concat()
+}
+
 /// The checksum of PNG chunks.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = !0u32;
