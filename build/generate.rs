@@ -1,9 +1,10 @@
-//! Writes the Rust side of every program: a struct with one named, typed field per binding, the push constants, the
-//! structs shared with the host.
+//! Writes the Rust side of every program: a struct with one named, typed field per binding, a nested one for each group that it
+//! uses, the push constants, the structs shared with the host.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::groups::Group;
 use super::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
 
 /// A stage of a program, its SPIR-V, and the file in `OUT_DIR` that holds it.
@@ -26,7 +27,7 @@ pub(crate) struct Program {
 ///
 /// # Errors
 /// Says which program contradicts itself or another one.
-pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
+pub(crate) fn generate(programs: &[Program], groups: &[Group]) -> Result<String, String> {
     let mut structs: BTreeMap<String, Struct> = BTreeMap::new();
     for program in programs {
         for stage in &program.stages {
@@ -50,14 +51,15 @@ pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
         write_struct(&mut out, &shared.name, &shared.fields, &structs, "A struct shared with the shaders.")?;
     }
     out.push_str("}\n");
+    write_groups(&mut out, groups);
     let mut pieces: BTreeMap<&str, Vec<&Program>> = BTreeMap::new();
     for program in programs {
         pieces.entry(&program.piece).or_default().push(program);
     }
     for (piece, programs) in pieces {
-        writeln!(out, "/// The programs of `glsl/{piece}/`.\npub mod {piece} {{\n#[allow(unused_imports, reason = \"a piece may share no struct\")]\nuse super::types;\nuse crate::graph::bindings::*;\nuse crate::vulkan::program as vp;").ok();
+        writeln!(out, "/// The programs of `glsl/{piece}/`.\npub mod {piece} {{\n#[allow(unused_imports, reason = \"a piece may share nothing\")]\nuse super::{{groups, types}};\nuse crate::graph::bindings::*;\nuse crate::vulkan::program as vp;").ok();
         for program in programs {
-            write_program(&mut out, program, &structs)
+            write_program(&mut out, program, groups, &structs)
                 .map_err(|error| format!("glsl/{piece}/{}: {error}", program.pass))?;
         }
         out.push_str("}\n");
@@ -65,7 +67,71 @@ pub(crate) fn generate(programs: &[Program]) -> Result<String, String> {
     Ok(out)
 }
 
-fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String, Struct>) -> Result<(), String> {
+/// The groups' structs: what a pass is given whole, and of which it takes what its program uses.
+fn write_groups(out: &mut String, groups: &[Group]) {
+    out.push_str(
+        "/// Bindings that several programs share, a struct for each file of `glsl/groups/`.\npub mod groups {\n",
+    );
+    out.push_str("#[allow(unused_imports, reason = \"groups may share no struct\")]\nuse super::types;\n");
+    out.push_str("#[allow(unused_imports, reason = \"there may be no group\")]\nuse crate::graph::bindings::*;\n");
+    for group in groups {
+        let name = camel(&group.name);
+        writeln!(out, "/// {}\n#[derive(Clone, Debug)]\npub struct {name} {{", group.summary).ok();
+        write_fields(out, group.members.iter(), &group.constants);
+        out.push_str("}\n");
+        let may_lack =
+            |member: &Binding| matches!(member.kind, BindingKind::SampledImage(_) | BindingKind::TexelBuffer);
+        if group.members.iter().all(may_lack) {
+            writeln!(
+                out,
+                "impl {name} {{\n/// Nothing is there; no pass reads any of it.\npub fn absent() -> {name} {{"
+            )
+            .ok();
+            writeln!(out, "{name} {{").ok();
+            for member in &group.members {
+                writeln!(out, "{}: {}::absent(),", member.name, handle(&member.kind)).ok();
+            }
+            for constant in &group.constants {
+                writeln!(out, "{}: {},", constant.name.to_lowercase(), default_of(constant)).ok();
+            }
+            out.push_str("}\n}\n}\n");
+        }
+    }
+    out.push_str("}\n");
+}
+
+fn default_of(constant: &Constant) -> String {
+    match constant.ty {
+        Type::Float => format!("f32::from_bits({})", constant.default),
+        Type::Int => format!("{}", constant.default.cast_signed()),
+        _ => format!("{}", constant.default),
+    }
+}
+
+fn write_fields<'a>(out: &mut String, bindings: impl Iterator<Item = &'a Binding>, constants: &[Constant]) {
+    for field in bindings {
+        writeln!(
+            out,
+            "/// Binding {} of set {}.\npub {}: {},",
+            field.binding,
+            field.set,
+            field.name,
+            handle(&field.kind)
+        )
+        .ok();
+    }
+    for constant in constants {
+        let (name, ty) = (constant.name.to_lowercase(), rust_type(&constant.ty, ""));
+        writeln!(out, "/// Specialisation constant {}.\npub {name}: {ty},", constant.id).ok();
+    }
+}
+
+fn write_program(
+    out: &mut String,
+    program: &Program,
+    groups: &[Group],
+    structs: &BTreeMap<String, Struct>,
+) -> Result<(), String> {
     let name = camel(&program.pass);
     let mut bindings: Vec<Binding> = Vec::new();
     let mut push: Option<Struct> = None;
@@ -110,18 +176,11 @@ fn write_program(out: &mut String, program: &Program, structs: &BTreeMap<String,
         write_struct(out, &format!("{name}Push"), &push.fields, structs, &format!("Push constants of [`{name}`]."))?;
     }
     write_table(out, program, &name, &bindings, &constants, local_size, push_size);
-    write_bindings(out, &name, &program.summary, 0, &bindings, push.is_some(), &constants, structs);
+    let parts = Parts { groups, bindings: &bindings, constants: &constants, push: push.is_some() };
+    write_bindings(out, &name, &program.summary, 0, &parts)?;
     if bindings.iter().any(|binding| binding.set == 1) {
-        write_bindings(
-            out,
-            &format!("{name}Material"),
-            "What a material binds for its draws.",
-            1,
-            &bindings,
-            false,
-            &[],
-            structs,
-        );
+        let parts = Parts { groups: &[], constants: &[], push: false, ..parts };
+        write_bindings(out, &format!("{name}Material"), "What a material binds for its draws.", 1, &parts)?;
     }
     Ok(())
 }
@@ -163,8 +222,8 @@ fn write_table(
         };
         writeln!(
             out,
-            "vp::Binding {{ set: {}, binding: {}, kind: vp::BindingKind::{kind} }},",
-            binding.set, binding.binding
+            "vp::Binding {{ set: {}, binding: {}, kind: vp::BindingKind::{kind}, integers: {} }},",
+            binding.set, binding.binding, binding.integers
         )
         .ok();
     }
@@ -173,34 +232,52 @@ fn write_table(
         .ok();
 }
 
-#[allow(clippy::too_many_arguments, reason = "one generated item, every argument a part of it")]
-fn write_bindings(
-    out: &mut String,
-    name: &str,
-    summary: &str,
-    set: u32,
-    bindings: &[Binding],
+/// What the struct of a program holds.
+struct Parts<'a> {
+    groups: &'a [Group],
+    bindings: &'a [Binding],
+    constants: &'a [Constant],
     push: bool,
-    constants: &[Constant],
-    structs: &BTreeMap<String, Struct>,
-) {
-    let _ = structs;
-    let fields: Vec<&Binding> = bindings.iter().filter(|binding| binding.set == set).collect();
-    writeln!(out, "/// {summary}\n#[derive(Clone, Debug)]\npub struct {name} {{").ok();
-    for field in &fields {
-        writeln!(out, "/// Binding {} of set {set}.\npub {}: {},", field.binding, field.name, handle(&field.kind)).ok();
+}
+
+impl Parts<'_> {
+    /// The field that holds a binding of set 0 or a constant: its own, or one of its group's.
+    fn place(&self, group: Option<&Group>, name: &str) -> String {
+        group.map_or_else(|| format!("self.{name}"), |group| format!("self.{}.{name}", group.name))
     }
-    for constant in constants {
-        writeln!(
-            out,
-            "/// Specialisation constant {}.\npub {}: {},",
-            constant.id,
-            constant.name.to_lowercase(),
-            rust_type(&constant.ty, "")
-        )
-        .ok();
+
+    fn group_of(&self, binding: &Binding) -> Option<&Group> {
+        self.groups.iter().find(|group| group.owns(binding))
     }
-    if push {
+
+    fn group_of_constant(&self, constant: &Constant) -> Option<&Group> {
+        self.groups.iter().find(|group| group.owns_constant(constant))
+    }
+
+    /// The groups of which the program uses something.
+    fn used_groups(&self) -> impl Iterator<Item = &Group> {
+        let uses = |group: &&Group| {
+            self.bindings.iter().any(|binding| group.owns(binding))
+                || self.constants.iter().any(|constant| group.owns_constant(constant))
+        };
+        self.groups.iter().filter(uses)
+    }
+}
+
+fn write_bindings(out: &mut String, name: &str, summary: &str, set: u32, parts: &Parts<'_>) -> Result<(), String> {
+    let bindings: Vec<&Binding> = parts.bindings.iter().filter(|binding| binding.set == set).collect();
+    let own = bindings.iter().copied().filter(|binding| parts.group_of(binding).is_none());
+    let own_constants: Vec<Constant> =
+        parts.constants.iter().filter(|constant| parts.group_of_constant(constant).is_none()).cloned().collect();
+    if let Some(group) = parts.used_groups().find(|group| own.clone().any(|binding| binding.name == group.name)) {
+        return Err(format!("it has both a binding and a group of the name {}", group.name));
+    }
+    writeln!(out, "/// {summary}\npub struct {name} {{").ok();
+    for group in parts.used_groups() {
+        writeln!(out, "/// `glsl/groups/{0}.glsl`.\npub {0}: groups::{1},", group.name, camel(&group.name)).ok();
+    }
+    write_fields(out, own, &own_constants);
+    if parts.push {
         writeln!(out, "/// Push constants.\npub push: {name}Push,").ok();
     }
     let table = screaming(name.strip_suffix("Material").filter(|_| set == 1).unwrap_or(name));
@@ -209,26 +286,26 @@ fn write_bindings(
         "}}\nimpl BindingSet for {name} {{\nconst PROGRAM: &'static vp::Program = &{table};\nconst SET: u32 = {set};"
     )
     .ok();
-    writeln!(out, "fn visit(&self, visitor: &mut dyn FnMut(u32, Access)) {{").ok();
-    for field in &fields {
-        writeln!(out, "visitor({}, (&self.{}).into());", field.binding, field.name).ok();
-    }
-    if fields.is_empty() {
-        out.push_str("let _ = visitor;\n");
+    let visitor = if bindings.is_empty() { "_" } else { "visitor" };
+    writeln!(out, "fn visit(&self, {visitor}: &mut dyn FnMut(u32, Option<Access>)) {{").ok();
+    for binding in &bindings {
+        let place = parts.place(parts.group_of(binding), &binding.name);
+        writeln!(out, "visitor({}, {place}.access());", binding.binding).ok();
     }
     out.push_str("}\nfn push_bytes(&self) -> &[u8] {\n");
-    out.push_str(if push { "bytemuck::bytes_of(&self.push)\n" } else { "&[]\n" });
+    out.push_str(if parts.push { "bytemuck::bytes_of(&self.push)\n" } else { "&[]\n" });
     out.push_str("}\nfn constants(&self) -> Vec<u32> {\nvec![");
-    for constant in constants {
-        let bits = if constant.ty == Type::Float { "to_bits()" } else { "cast_unsigned()" };
-        let place = format!("self.{}", constant.name.to_lowercase());
-        if constant.ty == Type::Uint {
-            write!(out, "{place}, ").ok()
-        } else {
-            write!(out, "{place}.{bits}, ").ok()
+    for constant in parts.constants {
+        let place = parts.place(parts.group_of_constant(constant), &constant.name.to_lowercase());
+        let bits = match constant.ty {
+            Type::Uint => "",
+            Type::Float => ".to_bits()",
+            _ => ".cast_unsigned()",
         };
+        write!(out, "{place}{bits}, ").ok();
     }
     out.push_str("]\n}\n}\n");
+    Ok(())
 }
 
 fn write_struct(

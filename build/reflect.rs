@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 
 use spirv::{Decoration, Dim, ExecutionMode, Op, StorageClass};
 
+use super::words::{instructions, static_use};
+
 /// A scalar, vector, matrix, array or struct in memory shared with the host.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Type {
@@ -53,6 +55,8 @@ pub(crate) struct Binding {
     pub(crate) set: u32,
     pub(crate) binding: u32,
     pub(crate) kind: BindingKind,
+    /// Of images and texel buffers: whether their texels are integers.
+    pub(crate) integers: bool,
 }
 
 /// A specialisation constant with its default as raw bits.
@@ -67,9 +71,13 @@ pub(crate) struct Constant {
 /// What one shader stage asks for.
 #[derive(Debug, Default)]
 pub(crate) struct Stage {
+    /// What its entry point statically uses.
     pub(crate) bindings: Vec<Binding>,
     pub(crate) push: Option<Struct>,
     pub(crate) constants: Vec<Constant>,
+    /// All that its source declares, used or not.
+    pub(crate) declared_bindings: Vec<Binding>,
+    pub(crate) declared_constants: Vec<Constant>,
     pub(crate) local_size: [u32; 3],
     pub(crate) structs: BTreeMap<String, Struct>,
 }
@@ -80,7 +88,7 @@ enum RawType {
     Float,
     Vector { component: u32, count: u32 },
     Matrix { column: u32, count: u32 },
-    Image { dim: Dim, arrayed: bool, sampled: u32 },
+    Image { texel: u32, dim: Dim, arrayed: bool, sampled: u32 },
     SampledImage { image: u32 },
     Array { element: u32, length: u32 },
     RuntimeArray { element: u32 },
@@ -105,6 +113,7 @@ struct Module {
 /// Reads one stage. Errors are sentences about the shader, without its file name.
 pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
     let module = parse(words)?;
+    let used = static_use(words)?;
     let mut stage = Stage { local_size: module.local_size, ..Stage::default() };
     if let Some(ids) = module.local_size_ids {
         stage.local_size = ids.map(|id| module.constants.get(&id).map_or(1, |constant| constant.1));
@@ -112,12 +121,12 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
     for &id in &module.specialised {
         let Some(&spec_id) = module.decorations.get(&(id, Decoration::SpecId)) else { continue };
         let (ty, default) = module.constants[&id];
-        stage.constants.push(Constant {
-            name: module.name(id)?,
-            id: spec_id,
-            ty: module.host_type(ty, &mut stage.structs)?,
-            default,
-        });
+        let ty = module.host_type(ty, &mut stage.structs)?;
+        let constant = Constant { name: module.name(id)?, id: spec_id, ty, default };
+        if used.contains(&id) {
+            stage.constants.push(constant.clone());
+        }
+        stage.declared_constants.push(constant);
     }
     for &(id, pointer, class) in &module.variables {
         let Some(RawType::Pointer { pointee }) = module.types.get(&pointer) else { continue };
@@ -128,7 +137,10 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
             }
             StorageClass::UniformConstant | StorageClass::Uniform | StorageClass::StorageBuffer => {
                 let binding = module.binding(id, *pointee, class, &mut stage.structs)?;
-                stage.bindings.push(binding);
+                if used.contains(&id) {
+                    stage.bindings.push(binding.clone());
+                }
+                stage.declared_bindings.push(binding);
             }
             _ => {}
         }
@@ -139,17 +151,8 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
 
 fn parse(words: &[u32]) -> Result<Module, String> {
     let mut module = Module { local_size: [1; 3], ..Module::default() };
-    let mut at = 5;
-    while at < words.len() {
-        let count = (words[at] >> 16) as usize;
-        let Some(op) = Op::from_u32(words[at] & 0xffff) else {
-            return Err("it holds an unknown instruction".to_owned());
-        };
-        if count == 0 || at + count > words.len() {
-            return Err("its SPIR-V is cut short".to_owned());
-        }
-        module.read(op, &words[at + 1..at + count]);
-        at += count;
+    for (op, operands) in instructions(words)? {
+        module.read(op, operands);
     }
     Ok(module)
 }
@@ -189,7 +192,10 @@ impl Module {
             Op::TypeMatrix => self.add_type(operands[0], RawType::Matrix { column: operands[1], count: operands[2] }),
             Op::TypeImage => {
                 let dim = Dim::from_u32(operands[2]).unwrap_or(Dim::Dim2D);
-                self.add_type(operands[0], RawType::Image { dim, arrayed: operands[4] == 1, sampled: operands[6] });
+                self.add_type(
+                    operands[0],
+                    RawType::Image { texel: operands[1], dim, arrayed: operands[4] == 1, sampled: operands[6] },
+                );
             }
             Op::TypeSampledImage => self.add_type(operands[0], RawType::SampledImage { image: operands[1] }),
             Op::TypeArray => self.add_type(operands[0], RawType::Array { element: operands[1], length: operands[2] }),
@@ -222,6 +228,10 @@ impl Module {
         self.decorations.contains_key(&(id, decoration))
     }
 
+    fn is_integer(&self, id: u32) -> bool {
+        matches!(self.types.get(&id), Some(RawType::Int { .. }))
+    }
+
     fn binding(
         &self,
         id: u32,
@@ -235,7 +245,7 @@ impl Module {
         let writes = !self.has(id, Decoration::NonWritable);
         match &self.types[&pointee] {
             RawType::SampledImage { image } => {
-                let RawType::Image { dim, arrayed, .. } = self.types[image] else {
+                let RawType::Image { texel, dim, arrayed, .. } = self.types[image] else {
                     return Err("a sampler of no image".to_owned());
                 };
                 let kind = if dim == Dim::DimBuffer {
@@ -243,9 +253,9 @@ impl Module {
                 } else {
                     BindingKind::SampledImage(image_dim(dim, arrayed)?)
                 };
-                self.finish(id, self.name(id)?, set, kind)
+                Ok(Binding { integers: self.is_integer(texel), ..self.finish(id, self.name(id)?, set, kind)? })
             }
-            RawType::Image { dim, arrayed, sampled } => {
+            RawType::Image { texel, dim, arrayed, sampled } => {
                 let kind = match (dim, sampled) {
                     (Dim::DimBuffer, _) => BindingKind::TexelBuffer,
                     (_, 2) => BindingKind::StorageImage { dim: image_dim(*dim, *arrayed)?, reads, writes },
@@ -256,7 +266,7 @@ impl Module {
                         ));
                     }
                 };
-                self.finish(id, self.name(id)?, set, kind)
+                Ok(Binding { integers: self.is_integer(*texel), ..self.finish(id, self.name(id)?, set, kind)? })
             }
             RawType::Struct { members } => {
                 let [member] = members[..] else {
@@ -287,7 +297,7 @@ impl Module {
     fn finish(&self, id: u32, name: String, set: u32, kind: BindingKind) -> Result<Binding, String> {
         let binding = self.decorations.get(&(id, Decoration::Binding)).copied();
         let binding = binding.ok_or_else(|| format!("{name} has no layout(binding = …)"))?;
-        Ok(Binding { name, set, binding, kind })
+        Ok(Binding { name, set, binding, kind, integers: false })
     }
 
     fn struct_fields(&self, id: u32, structs: &mut BTreeMap<String, Struct>) -> Result<Vec<Field>, String> {

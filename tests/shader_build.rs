@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 #[allow(dead_code, reason = "its main is cargo's to call")]
 mod build_script;
 
+use build_script::limits::{Exception, Limit};
+
 /// A folder of shaders and one for what is made of them; gone with the test.
 struct Tree(PathBuf);
 
@@ -34,9 +36,14 @@ impl Drop for Tree {
 
 /// The generated module, or what the build script complains about.
 fn build(files: &[(&str, &str)]) -> Result<String, String> {
+    build_with(files, &[])
+}
+
+/// The same with exceptions to the limits.
+fn build_with(files: &[(&str, &str)], exceptions: &[Exception]) -> Result<String, String> {
     let tree = Tree::new(files);
     let out = tree.0.join("out");
-    build_script::build(&tree.0.join("glsl"), &out)?;
+    build_script::build(&tree.0.join("glsl"), &out, exceptions)?;
     Ok(fs::read_to_string(Path::new(&out).join("shaders.rs")).expect("it was made"))
 }
 
@@ -204,4 +211,194 @@ fn layouts_that_rust_does_not_share_are_refused() {
     );
     let error = complaint(&[("piece/long.comp", &long)]);
     assert!(error.contains("glsl/piece/long") && error.contains("128"), "{error}");
+}
+
+const RAYS: &str = "// What rays meet. More is said here.\n// group: bindings 32 to 39, constants 32 to 33\n\
+    layout(constant_id = 32) const uint MASKS = 0u;\nlayout(constant_id = 33) const uint COLORS = 1u;\n\
+    layout(set = 0, binding = 32) uniform usamplerBuffer nodes;\nlayout(set = 0, binding = 33) uniform samplerBuffer triangles;\n";
+const LIGHTS: &str = "// group: bindings 40 to 43\nlayout(set = 0, binding = 40) uniform usamplerBuffer lights;\n";
+
+/// A program that includes `groups` and does `work` into `sums[0]`.
+fn with_groups(groups: &[&str], work: &str) -> String {
+    let includes: String = groups.iter().map(|group| format!("#include \"groups/{group}.glsl\"\n")).collect();
+    compute(&format!("{includes}layout(set = 0, binding = 0) buffer Sums {{ float sums[]; }};\n{work}"))
+}
+
+#[test]
+fn a_group_becomes_a_struct_of_which_a_program_takes_what_it_uses() {
+    // `triangles` is named in a function that nobody calls, COLORS in one that main calls through another.
+    let user = with_groups(
+        &["rays", "lights"],
+        "float unused() { return texelFetch(triangles, 0).x; }
+        float color() { return COLORS != 0u ? 1.0 : 0.5; }
+        float node(int place) { return float(texelFetch(nodes, place).x) * color(); }
+        void main() { sums[0] = node(3); }",
+    );
+    let generated = build(&[("groups/rays.glsl", RAYS), ("groups/lights.glsl", LIGHTS), ("piece/user.comp", &user)])
+        .expect("a sound program");
+    for line in [
+        "/// What rays meet.\n#[derive(Clone, Debug)]\npub struct Rays {",
+        "pub nodes: TexelBuffer,",
+        "pub triangles: TexelBuffer,",
+        "pub masks: u32,",
+        "pub fn absent() -> Rays {",
+        "pub rays: groups::Rays,",
+        "visitor(32, self.rays.nodes.access());",
+        "vec![self.rays.colors, ]",
+        "constants: &[33]",
+        "kind: vp::BindingKind::TexelBuffer, integers: true",
+    ] {
+        assert!(generated.contains(line), "no line {line:?} in\n{generated}");
+    }
+    for word in ["visitor(33", "groups::Lights", "self.rays.masks"] {
+        assert!(!generated.contains(word), "{word} in\n{generated}");
+    }
+}
+
+#[test]
+fn what_no_group_declares_and_no_program_uses_is_not_bound() {
+    let source = compute(
+        "layout(constant_id = 0) const uint SIDE = 2u;
+        layout(constant_id = 1) const uint IDLE = 2u;
+        layout(set = 0, binding = 0) buffer Sums { float sums[]; };
+        layout(set = 0, binding = 1) uniform sampler2D idle;
+        const uint AREA = SIDE * SIDE;
+        shared float parts[AREA];
+        void main() { parts[0] = 1.0; sums[0] = parts[0]; }",
+    );
+    let generated = build(&[("piece/user.comp", &source)]).expect("a sound program");
+    assert!(generated.contains("constants: &[0]") && generated.contains("pub side: u32"), "{generated}");
+    assert!(!generated.contains("idle"), "{generated}");
+}
+
+#[test]
+fn the_spirv_lacks_what_is_not_used() {
+    let work = "void main() { sums[0] = float(texelFetch(nodes, 0).x); }";
+    let tree = Tree::new(&[("groups/rays.glsl", RAYS), ("piece/user.comp", &with_groups(&["rays"], work))]);
+    let out = tree.0.join("out");
+    build_script::build(&tree.0.join("glsl"), &out, &[]).expect("a sound program");
+    let bytes = fs::read(out.join("piece.user.comp.spv")).expect("it was made");
+    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("4"))).collect();
+    let stage = build_script::reflect::reflect(&words).expect("it is whole");
+    let names: Vec<&str> = stage.declared_bindings.iter().map(|binding| binding.name.as_str()).collect();
+    assert_eq!(names, ["sums", "nodes"]);
+}
+
+#[test]
+fn groups_keep_to_their_numbers() {
+    let user = with_groups(&["rays"], "void main() { sums[0] = float(texelFetch(nodes, 0).x); }");
+    let refused = |group: &str, source: &str, words: &[&str]| {
+        let error = complaint(&[("groups/rays.glsl", RAYS), (group, source), ("piece/user.comp", &user)]);
+        for word in words {
+            assert!(error.contains(word), "no {word} in {error}");
+        }
+    };
+    refused(
+        "groups/lights.glsl",
+        "// group: bindings 39 to 43\nlayout(set = 0, binding = 40) uniform usamplerBuffer lights;\n",
+        &["glsl/groups/lights.glsl", "glsl/groups/rays.glsl", "bindings"],
+    );
+    refused(
+        "groups/lights.glsl",
+        "// group: bindings 40 to 43, constants 33 to 34\nlayout(set = 0, binding = 40) uniform usamplerBuffer lights;\n",
+        &["glsl/groups/lights.glsl", "glsl/groups/rays.glsl", "constants"],
+    );
+    refused(
+        "groups/lights.glsl",
+        "// group: bindings 40 to 43\nlayout(set = 0, binding = 38) uniform usamplerBuffer lights;\n",
+        &["glsl/groups/lights.glsl", "lights", "38", "range"],
+    );
+    refused(
+        "groups/lights.glsl",
+        "layout(set = 0, binding = 40) uniform usamplerBuffer lights;\n",
+        &["glsl/groups/lights.glsl", "// group:"],
+    );
+}
+
+#[test]
+fn a_member_is_declared_once() {
+    let again = "// group: bindings 40 to 43\nlayout(set = 0, binding = 40) uniform usamplerBuffer nodes;\n";
+    let error = complaint(&[("groups/rays.glsl", RAYS), ("groups/again.glsl", again)]);
+    for word in ["nodes", "glsl/groups/rays.glsl", "glsl/groups/again.glsl"] {
+        assert!(error.contains(word), "{error}");
+    }
+}
+
+#[test]
+fn a_program_declares_nothing_with_a_groups_numbers() {
+    let files = |declared: &str| {
+        let work = format!("{declared}\nvoid main() {{ sums[0] = 1.0; }}");
+        with_groups(&[], &work)
+    };
+    for (declared, name, number) in [
+        ("layout(set = 0, binding = 35) uniform samplerBuffer own;", "own", "35"),
+        ("layout(set = 0, binding = 32) uniform usamplerBuffer nodes;", "nodes", "32"),
+        ("layout(constant_id = 33) const uint OWN = 0u;", "OWN", "33"),
+    ] {
+        let error = complaint(&[("groups/rays.glsl", RAYS), ("piece/user.comp", &files(declared))]);
+        for word in ["glsl/piece/user", "glsl/groups/rays.glsl", name, number] {
+            assert!(error.contains(word), "no {word} in {error}");
+        }
+    }
+}
+
+/// A program that uses so many bindings of one kind, and a storage buffer besides.
+fn many(kind: &str, count: usize) -> String {
+    let (mut declared, mut sum) = (String::new(), String::from("1.0"));
+    for number in 1..=count {
+        let place = format!("layout(set = 0, binding = {number}");
+        declared += &match kind {
+            "sampled" if number % 2 == 0 => format!("{place}) uniform samplerBuffer m{number};\n"),
+            "sampled" => format!("{place}) uniform sampler2D m{number};\n"),
+            "image" => format!("{place}, r32f) readonly uniform image2D m{number};\n"),
+            "uniform" => format!("{place}) uniform B{number} {{ vec4 m{number}; }};\n"),
+            "storage" => format!("{place}) buffer B{number} {{ float m{number}[]; }};\n"),
+            _ => format!("layout(set = {number}, binding = 0) buffer B{number} {{ float m{number}[]; }};\n"),
+        };
+        sum += &match kind {
+            "sampled" if number % 2 == 0 => format!(" + texelFetch(m{number}, 0).x"),
+            "sampled" => format!(" + texelFetch(m{number}, ivec2(0), 0).x"),
+            "image" => format!(" + imageLoad(m{number}, ivec2(0)).x"),
+            "uniform" => format!(" + m{number}.x"),
+            _ => format!(" + m{number}[0]"),
+        };
+    }
+    compute(&format!(
+        "layout(set = 0, binding = 0) buffer Sums {{ float sums[]; }};\n{declared}void main() {{ sums[0] = {sum}; }}"
+    ))
+}
+
+#[test]
+fn what_not_every_device_binds_is_refused() {
+    for (kind, most, count, what) in [
+        ("sampled", 16, "17", "sampled images and texel buffers"),
+        ("image", 4, "5", "storage images"),
+        ("uniform", 12, "13", "uniform buffers"),
+        // Sums is one too.
+        ("storage", 3, "5", "storage buffers"),
+        ("sets", 2, "4", "descriptor sets"),
+    ] {
+        build(&[("piece/user.comp", &many(kind, most))]).expect("as much as every device offers");
+        let error = complaint(&[("piece/user.comp", &many(kind, most + 1))]);
+        for word in ["glsl/piece/user", count, what] {
+            assert!(error.contains(word), "no {word} in {error}");
+        }
+    }
+}
+
+#[test]
+fn exceptions_are_listed_with_their_number_and_go_when_they_are_none() {
+    let exception = |program, count| Exception { program, limit: Limit::StorageBuffers, count, reason: "a test" };
+    let files = |count: usize| many("storage", count);
+    let build = |count: usize, exceptions: &[Exception]| build_with(&[("piece/user.comp", &files(count))], exceptions);
+    build(5, &[exception("piece/user", 6)]).expect("it is listed");
+    for (count, exceptions, word) in [
+        (5, [exception("piece/user", 7)], "lists 7"),
+        (3, [exception("piece/user", 5)], "for nothing"),
+        (3, [exception("piece/gone", 5)], "does not exist"),
+    ] {
+        let error = build(count, &exceptions).expect_err("it must not build");
+        println!("{error}");
+        assert!(error.contains(exceptions[0].program) && error.contains(word), "{error}");
+    }
 }

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
 #include "path/emissive_points.glsl"
 
@@ -13,9 +14,7 @@
 layout(local_size_x = 64) in;
 
 // 1: directions look for emitters, not for the sky alone.
-layout(constant_id = 4) const uint FINDS_EMITTERS = 0u;
-
-layout(set = 0, binding = 8) uniform usamplerBuffer sobol;
+layout(constant_id = 3) const uint FINDS_EMITTERS = 0u;
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_lights.glsl"
+#include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
 #include "path/emissive_points.glsl"
 #include "path/emitters.glsl"
@@ -12,9 +14,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 8) uniform usamplerBuffer emitters;
-layout(set = 0, binding = 9) uniform usamplerBuffer sobol;
-
 layout(push_constant, scalar) uniform Push {
     vec3 shift;
     uint emitter_count;
@@ -23,7 +22,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
-    Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
+    Emitter emitter = pick_emitter(emissive_triangles, push.emitter_count, random.x);
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
     vec2 place = point_of_triangle(random.yz);

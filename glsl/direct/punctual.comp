@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_lights.glsl"
 #include "lib/lights.glsl"
 #include "direct/receiver.glsl"
 
@@ -11,8 +12,6 @@
 // the triangle itself gives nothing.
 
 layout(local_size_x = 64) in;
-
-layout(set = 0, binding = 8) uniform usamplerBuffer lights;
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;
@@ -47,7 +46,7 @@ void main() {
     if (pixel_depth > 0.0) {
         Receiver receiver = load_receiver(pixel, size, pixel_depth, push.shift);
         [[dont_unroll]] for (uint i = 0u; i < push.light_count; ++i) {
-            radiance += reflected_radiance(receiver, load_light(lights, i));
+            radiance += reflected_radiance(receiver, load_light(punctual_lights, i));
         }
     }
     store_direct(pixel, radiance);

@@ -3,6 +3,7 @@
 #ifndef DIRECT_RECEIVER
 #define DIRECT_RECEIVER
 
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/sobol.glsl"
 #include "lib/surface_packing.glsl"
@@ -11,14 +12,8 @@
 // 1: `before` holds what earlier kernels found.
 layout(constant_id = 2) const uint ADDS = 0u;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) uniform sampler2D before;
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D direct;
-layout(set = 0, binding = 6) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 7) uniform samplerBuffer bvh_triangles;
+layout(set = 0, binding = 0) uniform sampler2D before;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D direct;
 
 #include "lib/ray_offset.glsl"
 #include "path/cutouts.glsl"

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/light_views.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface_packing.glsl"
@@ -13,18 +15,10 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) uniform usamplerBuffer lights;
-layout(set = 0, binding = 5) uniform usamplerBuffer views;
-layout(set = 0, binding = 6) uniform sampler2D light_depth;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image2D direct;
+layout(set = 0, binding = 0, rgba32f) writeonly uniform image2D direct;
 
 layout(push_constant, scalar) uniform Push {
     uint light_count;
-    uint has_specular;    // 0: no material has a specular lobe, `specular` is not read
     float normal_offset;  // in shadow texels at the receiver
     int filter_radius;    // (2·radius + 1)² taps
 } push;
@@ -46,7 +40,7 @@ vec3 reflected_radiance(Surface point, vec3 to_eye, Light light) {
             light_depth, view, point.position_rs, point.geometric_normal,
             ShadowFilter(push.normal_offset, push.filter_radius));
     }
-    vec3 brdf = push.has_specular != 0u ? surface_brdf(point, illumination.to_light, to_eye) : point.diffuse_albedo * INVERSE_PI;
+    vec3 brdf = HAS_SPECULAR != 0u ? surface_brdf(point, illumination.to_light, to_eye) : point.diffuse_albedo * INVERSE_PI;
     return brdf * illumination.irradiance * (cosine * visibility);
 }
 
@@ -60,7 +54,7 @@ void main() {
     vec3 radiance = vec3(0.0);
     if (pixel_depth > 0.0) {
         vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
-        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+        vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 to_eye = direction_to_eye(camera, position_rs);
         for (uint i = 0u; i < push.light_count; ++i) {

@@ -1,12 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/normals.glsl"
 #include "gbuffer/targets.glsl"
 
 // One fragment of a primitive without textures: its normals, and its scattering lobes from the material's factors
 // (glTF 2.0 appendix B, see lib/brdf.glsl).
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
@@ -14,7 +13,7 @@ layout(location = 2) flat in uint instance_index;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     Lobes lobes = lobes_of_material(material, point);
 

@@ -1,13 +1,12 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/material_textures.glsl"
 #include "geometry/normal_map.glsl"
 #include "gbuffer/targets.glsl"
 
 // One fragment of a textured primitive: its normals with the normal map's on top, and its scattering lobes from the material's factors
 // times its textures (glTF 2.0 appendix B, see lib/brdf.glsl).
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 // 1: a fragment whose alpha is below the material's cutoff is a hole.
 layout(constant_id = 1) const uint ALPHA_MASK = 0u;
@@ -21,7 +20,7 @@ layout(location = 4) in vec4 texcoord_sets;
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     apply_base_color_texture(point, material, instance.material, texcoords);
     if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {

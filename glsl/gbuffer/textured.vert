@@ -1,10 +1,10 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "geometry/instances.glsl"
+#include "groups/geometry.glsl"
 
 // One vertex of a textured primitive: the object's point in the camera's clip space.
 
-layout(set = 0, binding = 5) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

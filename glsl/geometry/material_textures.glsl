@@ -3,9 +3,8 @@
 #ifndef GEOMETRY_MATERIAL_TEXTURES
 #define GEOMETRY_MATERIAL_TEXTURES
 
+#include "groups/geometry.glsl"
 #include "lib/brdf.glsl"
-
-layout(set = 0, binding = 4) uniform usamplerBuffer material_textures;
 
 layout(set = 1, binding = 0) uniform sampler2DArray base_color_texture;
 layout(set = 1, binding = 1) uniform sampler2DArray metallic_roughness_texture;
@@ -50,30 +49,30 @@ vec4 sample_texture(sampler2DArray array, TextureUse use, Texcoords texcoords) {
 // glTF 2.0: which channel of which texture scales which factor.
 void apply_base_color_texture(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_BASE_COLOR_TEXTURE)) {
-        point.base_color *= sample_texture(base_color_texture, load_texture_use(material_textures, index, USE_BASE_COLOR), texcoords);
+        point.base_color *= sample_texture(base_color_texture, load_texture_use(drawn_textures, index, USE_BASE_COLOR), texcoords);
     }
 }
 
 void apply_lobe_textures(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_METALLIC_ROUGHNESS_TEXTURE)) {
-        vec4 texel = sample_texture(metallic_roughness_texture, load_texture_use(material_textures, index, USE_METALLIC_ROUGHNESS), texcoords);
+        vec4 texel = sample_texture(metallic_roughness_texture, load_texture_use(drawn_textures, index, USE_METALLIC_ROUGHNESS), texcoords);
         point.roughness *= texel.g;
         point.metallic *= texel.b;
     }
     if (has_texture(material, MATERIAL_SPECULAR_TEXTURE)) {
-        point.specular *= sample_texture(specular_texture, load_texture_use(material_textures, index, USE_SPECULAR), texcoords).a;
+        point.specular *= sample_texture(specular_texture, load_texture_use(drawn_textures, index, USE_SPECULAR), texcoords).a;
     }
     if (has_texture(material, MATERIAL_SPECULAR_COLOR_TEXTURE)) {
-        point.specular_color *= sample_texture(specular_color_texture, load_texture_use(material_textures, index, USE_SPECULAR_COLOR), texcoords).rgb;
+        point.specular_color *= sample_texture(specular_color_texture, load_texture_use(drawn_textures, index, USE_SPECULAR_COLOR), texcoords).rgb;
     }
     if (has_texture(material, MATERIAL_TRANSMISSION_TEXTURE)) {
-        point.transmission *= sample_texture(transmission_texture, load_texture_use(material_textures, index, USE_TRANSMISSION), texcoords).r;
+        point.transmission *= sample_texture(transmission_texture, load_texture_use(drawn_textures, index, USE_TRANSMISSION), texcoords).r;
     }
 }
 
 void apply_emissive_texture(inout MaterialPoint point, Material material, uint index, Texcoords texcoords) {
     if (has_texture(material, MATERIAL_EMISSIVE_TEXTURE)) {
-        point.emissive *= sample_texture(emissive_texture, load_texture_use(material_textures, index, USE_EMISSIVE), texcoords).rgb;
+        point.emissive *= sample_texture(emissive_texture, load_texture_use(drawn_textures, index, USE_EMISSIVE), texcoords).rgb;
     }
 }
 

@@ -11,7 +11,7 @@ vec3 mapped_normal(Instance instance, Material material, Normals normals, vec4 v
     if (!has_texture(material, MATERIAL_NORMAL_TEXTURE) || (instance.flags & INSTANCE_HAS_TANGENTS) == 0u) {
         return normals.vertex;
     }
-    vec3 texel = sample_texture(normal_texture, load_texture_use(material_textures, instance.material, USE_NORMAL), texcoords).xyz * 2.0 - 1.0;
+    vec3 texel = sample_texture(normal_texture, load_texture_use(drawn_textures, instance.material, USE_NORMAL), texcoords).xyz * 2.0 - 1.0;
     texel.xy *= material.normal_scale;
     float mirror = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
     vec3 tangent = normalize_or(transform_direction(instance, vertex_tangent.xyz), vec3(0.0));

@@ -2,11 +2,8 @@
 #ifndef GEOMETRY_NORMALS
 #define GEOMETRY_NORMALS
 
-#include "geometry/instances.glsl"
+#include "groups/geometry.glsl"
 #include "lib/vectors.glsl"
-
-layout(set = 0, binding = 2) uniform usamplerBuffer indices;   // r32ui: the scene's index buffer
-layout(set = 0, binding = 3) uniform samplerBuffer positions;  // r32f: the scene's vertex positions, three texels each
 
 vec3 vertex_position(uint vertex) {
     int first = 3 * int(vertex);

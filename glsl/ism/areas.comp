@@ -7,8 +7,8 @@
 
 layout(local_size_x = 256) in;
 
-layout(set = 0, binding = 4) writeonly buffer AreaSums { float area_sums[]; };
-layout(set = 0, binding = 5) writeonly buffer BlockAreas { float block_areas[]; };
+layout(set = 0, binding = 1) writeonly buffer AreaSums { float area_sums[]; };
+layout(set = 0, binding = 2) writeonly buffer BlockAreas { float block_areas[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint instance_count;

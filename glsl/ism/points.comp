@@ -10,9 +10,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 4) uniform samplerBuffer area_sums;
-layout(set = 0, binding = 5) uniform samplerBuffer area_before;
-layout(set = 0, binding = 6) writeonly buffer Points { vec4 points[]; };
+layout(set = 0, binding = 1) uniform samplerBuffer area_sums;
+layout(set = 0, binding = 2) uniform samplerBuffer area_before;
+layout(set = 0, binding = 3) writeonly buffer Points { vec4 points[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint instance_count;

@@ -3,14 +3,12 @@
 #ifndef ISM_TRIANGLES
 #define ISM_TRIANGLES
 
-#include "geometry/instances.glsl"
+#include "groups/geometry.glsl"
 #include "lib/vectors.glsl"
 
 const uint BLOCK_TRIANGLES = 256u;
 
-layout(set = 0, binding = 1) uniform usamplerBuffer indices;
-layout(set = 0, binding = 2) uniform samplerBuffer positions;
-layout(set = 0, binding = 3) uniform usamplerBuffer first_triangles;  // of each instance, and the total
+layout(set = 0, binding = 0) uniform usamplerBuffer first_triangles;  // of each instance, and the total
 
 vec3 corner_rs(mat3x4 object_to_render, int vertex) {
     int first = 3 * vertex;

@@ -1,10 +1,12 @@
 // Rays against the scene's triangles: eight-wide bounding volume hierarchy with quantised boxes (Ylitie, Karras & Laine 2017),
 // watertight triangle test (Woop, Benthin & Wald 2013). The host's side, with the layout, is src/scene/bvh.rs.
 //
-// The including shader declares `usamplerBuffer bvh_nodes` and `samplerBuffer bvh_triangles`. If it defines BVH_ACCEPTS_HITS and
-// before the include a function `bool accepts_hit(uint triangle, vec2 barycentric)`, hits of flagged triangles must pass that.
+// If the including shader defines BVH_ACCEPTS_HITS and, before the include, a function `bool accepts_hit(uint triangle, vec2 barycentric)`,
+// hits of flagged triangles must pass that.
 #ifndef LIB_BVH
 #define LIB_BVH
+
+#include "groups/scene_rays.glsl"
 
 const uint NO_TRIANGLE = 0xffffffffu;
 

@@ -1,6 +1,8 @@
-// Rays that start on a surface. The including shader declares `usamplerBuffer bvh_nodes`, as for lib/bvh.glsl.
+// Rays that start on a surface.
 #ifndef LIB_RAY_OFFSET
 #define LIB_RAY_OFFSET
+
+#include "groups/scene_rays.glsl"
 
 // Moves a point of a surface, computed from its triangle's corners, to the side that the normal points to, so far that rays from
 // there do not meet the surface again: 256 units in the last place (Wächter & Binder, Ray Tracing Gems, ch. 6). Their constants

@@ -1,5 +1,5 @@
 // The scene as rays meet it: triangles in render space, the attributes of their corners, textures as plain texels.
-// The host flattens instances, so that a hit needs no transform (src/reference/traced_scene.rs).
+// The host flattens instances, so that a hit needs no transform (src/frame/rays/traced_scene.rs).
 #ifndef LIB_TRACED_SCENE
 #define LIB_TRACED_SCENE
 

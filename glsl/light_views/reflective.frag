@@ -1,12 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/normals.glsl"
 #include "light_views/view.glsl"
 #include "light_views/targets.glsl"
 
 // One texel of a reflective light view, on a primitive without textures: its normal and reflected flux in W (light_views/targets.glsl).
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
@@ -14,12 +13,12 @@ layout(location = 2) flat in uint instance_index;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     Lobes lobes = lobes_of_material(material, point);
     vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
 
     LightView view = load_view(views, push.view_index);
-    light_normal = pack_direction(normal);
-    light_flux = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
+    normal_target = pack_direction(normal);
+    flux_target = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
 }

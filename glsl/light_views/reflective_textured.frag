@@ -1,13 +1,12 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/material_textures.glsl"
 #include "geometry/normals.glsl"
 #include "light_views/view.glsl"
 #include "light_views/targets.glsl"
 
 // One texel of a reflective light view, on a textured primitive: its normal and reflected flux in W (light_views/targets.glsl).
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 // 1: a fragment whose alpha is below the material's cutoff is a hole.
 layout(constant_id = 1) const uint ALPHA_MASK = 0u;
@@ -20,7 +19,7 @@ layout(location = 3) in vec4 texcoord_sets;
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     apply_base_color_texture(point, material, instance.material, texcoords);
     if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {
@@ -31,6 +30,6 @@ void main() {
     vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
 
     LightView view = load_view(views, push.view_index);
-    light_normal = pack_direction(normal);
-    light_flux = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
+    normal_target = pack_direction(normal);
+    flux_target = reflected_flux(load_light(lights, view.light), view, gl_FragCoord, normal, lobes, point.transmission);
 }

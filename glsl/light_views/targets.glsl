@@ -7,15 +7,14 @@
 // [W], ρ = indirect_diffuse_albedo(). No cosine: the flux through a texel lands whole on whatever is there. Summed over a light's views the
 // texels in the lit rectangle tile all directions once, so the fluxes add up to what the light sends, times ρ.
 
+#include "groups/light_views.glsl"
 #include "lib/brdf.glsl"
 #include "lib/lights.glsl"
 #include "lib/octahedral.glsl"
 #include "light_views/flux.glsl"
 
-layout(set = 0, binding = 6) uniform usamplerBuffer lights;
-
-layout(location = 0) out uint light_normal;  // r32ui: the triangle's normal on the light's side, pack_direction()
-layout(location = 1) out vec4 light_flux;    // rgba32f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
+layout(location = 0) out uint normal_target; // r32ui: the triangle's normal on the light's side, pack_direction()
+layout(location = 1) out vec4 flux_target;   // rgba32f: Φ/view.flux_scale; a: what the texel reflects or transmits specularly
 
 vec4 reflected_flux(Light light, LightView view, vec4 fragment, vec3 normal, Lobes lobes, float transmission) {
     vec3 incident = incident_flux(light, view, fragment.xy, fragment.z);

@@ -1,9 +1,8 @@
 // Set 0 and push constant of the programs that draw the scene into one light view's rectangle of the atlas.
 
-#include "geometry/instances.glsl"
+#include "groups/geometry.glsl"
+#include "groups/light_views.glsl"
 #include "lib/lights.glsl"
-
-layout(set = 0, binding = 5) uniform usamplerBuffer views;
 
 layout(push_constant, scalar) uniform Push { uint view_index; } push;
 

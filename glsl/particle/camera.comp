@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/scene.glsl"
 #include "path/mis.glsl"
 #include "path/queue.glsl"
@@ -15,19 +17,10 @@
 
 layout(local_size_x = 64) in;
 
-// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
-layout(constant_id = 2) const uint SPECULAR_CAUSTICS = 0u;
-
-layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer path_states;
-layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
-layout(set = 0, binding = 4) uniform usamplerBuffer vertices;
-layout(set = 0, binding = 5) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 6) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 7) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
-layout(set = 0, binding = 8) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
-layout(set = 0, binding = 9) buffer QueueBlock { uint connections[]; };
+layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
+layout(set = 0, binding = 2) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
+layout(set = 0, binding = 3) buffer QueueBlock { uint connections[]; };
 
 #include "lib/ray_offset.glsl"
 
@@ -60,7 +53,7 @@ Sight sight_of(vec3 position) {
 }
 
 bool connect_to_camera(uint path) {
-    Vertex vertex = load_vertex(vertices, path);
+    Vertex vertex = load_vertex(path_vertices, path);
     Sight sight = sight_of(vertex.position_rs);
     vec3 to_light = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
     Frame frame = frame_around(vertex.normal);
@@ -76,7 +69,7 @@ bool connect_to_camera(uint path) {
     }
     float rays_per_area = camera_rays_per_area(push.rays, camera.position_rs, camera.forward, vertex.position_rs, vertex.geometric_normal);
     float others = vertex.ratio * diffuse.density * vertex.reverse_geometry * rays_per_area;
-    uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+    uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
     vec3 transmittance = vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     vec3 flux = texelFetch(path_states, int(path)).rgb * transmittance;
     float arriving = max(abs(dot(vertex.geometric_normal, to_light)), 1e-6);

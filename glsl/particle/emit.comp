@@ -1,5 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/new_paths.glsl"
+#include "groups/scene_lights.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
 #include "path/emitters.glsl"
@@ -14,22 +17,6 @@
 // path would. Only what falls within R of the scene's middle of a directional light counts.
 
 layout(local_size_x = 64) in;
-
-layout(set = 0, binding = 0) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 1) uniform usamplerBuffer emitters;
-layout(set = 0, binding = 2) uniform usamplerBuffer lights;
-layout(set = 0, binding = 3) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 4) uniform usamplerBuffer materials;
-layout(set = 0, binding = 5) uniform samplerBuffer corner_texcoords;
-layout(set = 0, binding = 6) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 7) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 8) uniform samplerBuffer texels;
-layout(set = 0, binding = 9) writeonly buffer RayBlock { vec4 path_rays[]; };
-layout(set = 0, binding = 10) writeonly buffer StateBlock { vec4 path_states[]; };
-layout(set = 0, binding = 11) writeonly buffer FlagBlock { uint path_flags[]; };
-layout(set = 0, binding = 12) writeonly buffer SeedBlock { uvec2 path_seeds[]; };
-layout(set = 0, binding = 13) buffer QueueBlock { uint active_paths[]; };
-layout(set = 0, binding = 14) uniform usamplerBuffer bvh_nodes;
 
 #include "lib/ray_offset.glsl"
 #include "path/emissive_points.glsl"
@@ -53,7 +40,7 @@ struct Start {
 };
 
 Start start_at_punctual(Emitter emitter, vec4 random) {
-    Light light = load_light(lights, emitter.number);
+    Light light = load_light(punctual_lights, emitter.number);
     Frame frame = frame_around(light.direction);
     if (light.kind == LIGHT_DIRECTIONAL) {
         float radius = push.radius * sqrt(random.x);
@@ -107,11 +94,11 @@ void main() {
             start = start_at_punctual(emitter, more);
         }
         wanted = max3(start.flux) > 0.0;
-        path_rays[2u * path] = vec4(start.origin, start.cosine);
-        path_rays[2u * path + 1u] = vec4(start.direction, start.next_density);
-        path_states[path] = vec4(start.flux, start.ratio);
-        path_flags[path] = FLAG_ALL_SPECULAR;
-        path_seeds[path] = uvec2(push.seed, index);
+        new_rays[2u * path] = vec4(start.origin, start.cosine);
+        new_rays[2u * path + 1u] = vec4(start.direction, start.next_density);
+        new_states[path] = vec4(start.flux, start.ratio);
+        new_flags[path] = FLAG_ALL_SPECULAR;
+        new_seeds[path] = uvec2(push.seed, index);
     }
-    APPEND_TO_QUEUE(active_paths, path, wanted)
+    APPEND_TO_QUEUE(new_paths, path, wanted)
 }

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 
@@ -11,9 +12,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer connections;
 layout(set = 0, binding = 1) uniform samplerBuffer connection_rays;
 layout(set = 0, binding = 2) uniform samplerBuffer connection_light;
-layout(set = 0, binding = 3) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 4) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 5) buffer SplatBlock { uint splats[]; };
+layout(set = 0, binding = 3) buffer SplatBlock { uint splats[]; };
 
 layout(push_constant, scalar) uniform Push {
     float scale;

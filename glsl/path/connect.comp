@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 
@@ -12,9 +13,7 @@ layout(constant_id = 0) const uint SPECULAR_LOBES = 1u;
 layout(set = 0, binding = 0) uniform usamplerBuffer connections;
 layout(set = 0, binding = 1) uniform samplerBuffer connection_rays;
 layout(set = 0, binding = 2) uniform samplerBuffer connection_light;
-layout(set = 0, binding = 3) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 4) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 5) buffer RadianceBlock { vec4 path_radiance[]; };
+layout(set = 0, binding = 3) buffer RadianceBlock { vec4 path_radiance[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint path_count;

@@ -1,22 +1,11 @@
 // Surfaces cut out by their alpha, for kernels that trace rays: whether a hit is on what is left of the surface (glTF 2.0, alphaMode
-// MASK). Bindings 16 to 22 of set 0.
+// MASK).
 #ifndef PATH_CUTOUTS
 #define PATH_CUTOUTS
 
+#include "groups/scene_rays.glsl"
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
-
-// 1: some surface is cut out.
-layout(constant_id = 15) const uint ALPHA_MASKS = 0u;
-layout(constant_id = 16) const uint VERTEX_COLORS = 0u;
-
-layout(set = 0, binding = 16) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 17) uniform samplerBuffer corner_colors;
-layout(set = 0, binding = 18) uniform samplerBuffer corner_texcoords;
-layout(set = 0, binding = 19) uniform usamplerBuffer materials;
-layout(set = 0, binding = 20) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 21) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 22) uniform samplerBuffer texels;
 
 #define BVH_ACCEPTS_HITS
 

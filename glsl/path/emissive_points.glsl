@@ -1,13 +1,11 @@
-// The radiance of points of emissive triangles, before the cosine decides which side shows. The including shader declares
-// `corner_texcoords`, `material_textures`, `texture_table` and `texels`, as path/cutouts.glsl does.
+// The radiance of points of emissive triangles, before the cosine decides which side shows.
 #ifndef PATH_EMISSIVE_POINTS
 #define PATH_EMISSIVE_POINTS
 
+#include "groups/scene_lights.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
-
-// 1: the radiance of some emissive triangles is textured.
-layout(constant_id = 3) const uint EMISSIVE_TEXTURES = 1u;
 
 // `place`: the weights of corners 1 and 2.
 vec3 emissive_radiance(Triangle triangle, Material material, vec2 place) {

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/new_paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/scene.glsl"
 #include "lib/sobol.glsl"
 #include "path/pixels.glsl"
@@ -12,12 +14,6 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 2) writeonly buffer RayBlock { vec4 path_rays[]; };
-layout(set = 0, binding = 3) writeonly buffer StateBlock { vec4 path_states[]; };
-layout(set = 0, binding = 4) writeonly buffer FlagBlock { uint path_flags[]; };
-layout(set = 0, binding = 5) writeonly buffer SeedBlock { uvec2 path_seeds[]; };
-layout(set = 0, binding = 6) buffer QueueBlock { uint active_paths[]; };
 
 layout(push_constant, scalar) uniform Push {
     WavePixels wave;
@@ -45,11 +41,11 @@ void main() {
         bool orthographic = camera.depth_range > 0.0;
         vec3 ray = orthographic ? camera.forward : camera.forward + across;
         vec3 origin = camera.position_rs + ray * camera.near + (orthographic ? across : vec3(0.0));
-        path_rays[2u * path] = vec4(origin, 1.0);
-        path_rays[2u * path + 1u] = vec4(normalize(ray), 0.0);
-        path_states[path] = vec4(vec3(1.0), 0.0);
-        path_flags[path] = FLAG_ALL_SPECULAR;
-        path_seeds[path] = uvec2(seed, index);
+        new_rays[2u * path] = vec4(origin, 1.0);
+        new_rays[2u * path + 1u] = vec4(normalize(ray), 0.0);
+        new_states[path] = vec4(vec3(1.0), 0.0);
+        new_flags[path] = FLAG_ALL_SPECULAR;
+        new_seeds[path] = uvec2(seed, index);
     }
-    APPEND_TO_QUEUE(active_paths, path, inside)
+    APPEND_TO_QUEUE(new_paths, path, inside)
 }

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 
@@ -7,11 +9,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer active_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 3) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 4) writeonly buffer HitBlock { vec4 path_hits[]; };
+layout(set = 0, binding = 0) writeonly buffer HitBlock { vec4 path_hits[]; };
 
 #include "path/cutouts.glsl"
 #include "lib/bvh.glsl"

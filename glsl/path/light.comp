@@ -1,5 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_lights.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "path/emitters.glsl"
 #include "path/queue.glsl"
@@ -15,33 +18,9 @@
 
 layout(local_size_x = 64) in;
 
-// 1: lights send out paths of their own.
-layout(constant_id = 2) const uint LIGHT_PATHS = 1u;
-// Beyond 0, photons carry the light of all emitters but lights with a range to vertices behind the first diffuse one (state.glsl).
-layout(constant_id = 4) const uint PHOTONS = 0u;
-// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
-layout(constant_id = 5) const uint SPECULAR_CAUSTICS = 0u;
-
-layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer path_states;
-layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
-layout(set = 0, binding = 4) uniform usamplerBuffer path_seeds;
-layout(set = 0, binding = 5) uniform usamplerBuffer vertices;
-layout(set = 0, binding = 6) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 7) uniform usamplerBuffer emitters;
-layout(set = 0, binding = 8) uniform usamplerBuffer lights;
-layout(set = 0, binding = 9) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 10) uniform usamplerBuffer materials;
-layout(set = 0, binding = 11) uniform samplerBuffer corner_texcoords;
-layout(set = 0, binding = 12) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 13) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 14) uniform samplerBuffer texels;
-layout(set = 0, binding = 15) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
-layout(set = 0, binding = 16) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
-layout(set = 0, binding = 17) buffer QueueBlock { uint connections[]; };
-
-layout(set = 0, binding = 18) uniform usamplerBuffer bvh_nodes;
+layout(set = 0, binding = 0) writeonly buffer ConnectionRayBlock { vec4 connection_rays[]; };
+layout(set = 0, binding = 1) writeonly buffer ConnectionLightBlock { vec4 connection_light[]; };
+layout(set = 0, binding = 2) buffer QueueBlock { uint connections[]; };
 
 #include "lib/ray_offset.glsl"
 #include "path/emissive_points.glsl"
@@ -62,7 +41,7 @@ struct LightSample {
 };
 
 LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
-    Light light = load_light(lights, emitter.number);
+    Light light = load_light(punctual_lights, emitter.number);
     Illumination illumination = illuminate(light, position_rs);
     bool directional = light.kind == LIGHT_DIRECTIONAL;
     float distance = directional ? 3e38 : length(light.position_rs - position_rs);
@@ -103,13 +82,13 @@ LightSample light_from(Emitter emitter, vec3 position_rs, vec2 random) {
 }
 
 bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2]) {
-    Vertex vertex = load_vertex(vertices, path);
+    Vertex vertex = load_vertex(path_vertices, path);
     vec3 to_viewer = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
     vec4 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_LIGHT + 2u * push.depth));
     Emitter emitter = pick_emitter(emitters, push.emitter_count, random.x);
     if (PHOTONS != PHOTONS_NONE && (texelFetch(path_flags, int(path)).x & FLAG_ALL_SPECULAR) == 0u) {
-        if (emitter.is_triangle || load_light(lights, emitter.number).range <= 0.0) {
+        if (emitter.is_triangle || load_light(punctual_lights, emitter.number).range <= 0.0) {
             return false;
         }
     }
@@ -134,7 +113,7 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     }
     vec3 arriving = texelFetch(path_states, int(path)).rgb * light.irradiance;
     if (SPECULAR_LOBES != 0u) {
-        uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+        uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
         arriving *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     }
     if (TRANSMISSIVE != 0u && side < 0.0) {

@@ -1,5 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/new_paths.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -10,22 +13,6 @@
 // f*·|cos| = f·|cos| · |l·n_s||v·n_g| / (|l·n_g||v·n_s|), and no factor 1/η² where it is refracted.
 
 layout(local_size_x = 64) in;
-
-layout(constant_id = 2) const uint FROM_LIGHT = 0u;
-layout(constant_id = 3) const uint LIGHT_PATHS = 1u;
-// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
-layout(constant_id = 4) const uint SPECULAR_CAUSTICS = 0u;
-
-layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
-layout(set = 0, binding = 1) uniform usamplerBuffer path_seeds;
-layout(set = 0, binding = 2) uniform usamplerBuffer vertices;
-layout(set = 0, binding = 3) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 4) buffer RayBlock { vec4 path_rays[]; };
-layout(set = 0, binding = 5) buffer StateBlock { vec4 path_states[]; };
-layout(set = 0, binding = 6) buffer FlagBlock { uint path_flags[]; };
-layout(set = 0, binding = 7) buffer QueueBlock { uint active_paths[]; };
-
-layout(set = 0, binding = 8) uniform usamplerBuffer bvh_nodes;
 
 #include "lib/ray_offset.glsl"
 
@@ -63,8 +50,8 @@ float ratio_after(Vertex vertex, LobeSample drawn, vec3 viewer, float arriving_d
 }
 
 bool scatter(uint path) {
-    Vertex vertex = load_vertex(vertices, path);
-    vec4 arrival = path_rays[2u * path + 1u];
+    Vertex vertex = load_vertex(path_vertices, path);
+    vec4 arrival = new_rays[2u * path + 1u];
     Frame frame = frame_around(vertex.normal);
     vec3 viewer = local_viewer(frame, -arrival.xyz);
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
@@ -73,16 +60,16 @@ bool scatter(uint path) {
     vec3 direction = to_world(frame, drawn.direction);
     float side = dot(vertex.geometric_normal, direction);
     bool later = FROM_LIGHT == 0u && push.depth > 1u;
-    if (SPECULAR_CAUSTICS != 0u && later && drawn.lobe == LOBE_DIFFUSE && (path_flags[path] & FLAG_SLOT_MASK) == SLOT_CAUSTICS) {
+    if (SPECULAR_CAUSTICS != 0u && later && drawn.lobe == LOBE_DIFFUSE && (new_flags[path] & FLAG_SLOT_MASK) == SLOT_CAUSTICS) {
         return false;
     }
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
         return false;
     }
-    vec4 state = path_states[path];
+    vec4 state = new_states[path];
     vec3 weight = drawn.weight;
     if (SPECULAR_LOBES != 0u) {
-        uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+        uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
         weight *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     }
     float scale = 1.0;
@@ -108,16 +95,16 @@ bool scatter(uint path) {
         return false;
     }
     float ratio = LIGHT_PATHS != 0u ? ratio_after(vertex, drawn, viewer, arrival.w) : 0.0;
-    path_states[path] = vec4(throughput / survival, ratio);
-    path_flags[path] = flags_after(path_flags[path], drawn.lobe);
+    new_states[path] = vec4(throughput / survival, ratio);
+    new_flags[path] = flags_after(new_flags[path], drawn.lobe);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
-    path_rays[2u * path] = vec4(origin, abs(side));
-    path_rays[2u * path + 1u] = vec4(direction, drawn.density);
+    new_rays[2u * path] = vec4(origin, abs(side));
+    new_rays[2u * path + 1u] = vec4(direction, drawn.density);
     return true;
 }
 
 void main() {
     uint path = queued_path(alive_paths);
     bool wanted = path != NO_PATH && scatter(path);
-    APPEND_TO_QUEUE(active_paths, path, wanted)
+    APPEND_TO_QUEUE(new_paths, path, wanted)
 }

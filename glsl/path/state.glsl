@@ -22,7 +22,7 @@ const uint FLAG_LAST_SPECULAR = 16u;     // the last vertex scattered specularly
 const uint FLAG_ALL_SPECULAR = 32u;      // every vertex so far did
 const uint FLAG_BEYOND_DIFFUSE = 64u;    // some vertex before the last scattered diffusely
 
-// What photons carry (src/reference/sppm.rs): the specialisation constant PHOTONS of kernels that leave that to them.
+// What photons carry (src/estimator/sppm.rs): the specialisation constant PHOTONS of kernels that leave that to them.
 const uint PHOTONS_NONE = 0u;            // nothing: there are none
 const uint PHOTONS_ALL = 1u;             // all light that scatters before a path's first diffuse vertex
 const uint PHOTONS_SOME = 2u;            // the same without light of the sky and of lights with a range

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
 #include "path/mis.glsl"
@@ -12,38 +14,14 @@
 
 layout(local_size_x = 64) in;
 
-// 1: paths from lights, which add nothing here.
-layout(constant_id = 2) const uint FROM_LIGHT = 0u;
-// The MATERIAL_ bits of the texture kinds that any material has.
-layout(constant_id = 3) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
 // 1: textures are filtered over the pixel at the first vertex, as rasterisation does.
-layout(constant_id = 4) const uint PIXEL_FOOTPRINT = 0u;
-// 1: lights send out paths of their own, so that camera paths carry the ratio C.
-layout(constant_id = 5) const uint LIGHT_PATHS = 1u;
-// 1: some mesh has vertex colors; some surface has a normal map and the tangents to use it.
-layout(constant_id = 6) const uint VERTEX_COLORS = 1u;
-layout(constant_id = 7) const uint NORMAL_MAPS = 1u;
-// What a camera's path leaves to photons behind its first diffuse vertex (state.glsl).
-layout(constant_id = 8) const uint PHOTONS = 0u;
+layout(constant_id = 2) const uint PIXEL_FOOTPRINT = 0u;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer active_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer path_states;
-layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
-layout(set = 0, binding = 4) uniform samplerBuffer path_hits;
-layout(set = 0, binding = 5) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 7) uniform samplerBuffer corner_colors;     // rgba8 unorm
-layout(set = 0, binding = 8) uniform samplerBuffer corner_texcoords;  // rgba32f: sets 0 and 1
-layout(set = 0, binding = 9) uniform samplerBuffer corner_tangents;   // rgba32f
-layout(set = 0, binding = 10) uniform usamplerBuffer materials;
-layout(set = 0, binding = 11) uniform samplerBuffer media;            // rgba32f: absorption in 1/m, 1 where the surface bounds a medium
-layout(set = 0, binding = 12) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 13) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 14) uniform samplerBuffer texels;
-layout(set = 0, binding = 15) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 16) writeonly buffer VertexBlock { uvec4 vertices[]; };
-layout(set = 0, binding = 17) buffer RadianceBlock { vec4 path_radiance[]; };
-layout(set = 0, binding = 18) buffer QueueBlock { uint alive_paths[]; };
+layout(set = 0, binding = 0) uniform samplerBuffer path_hits;
+layout(set = 0, binding = 1) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 2) writeonly buffer VertexBlock { uvec4 vertices[]; };
+layout(set = 0, binding = 3) buffer RadianceBlock { vec4 path_radiance[]; };
+layout(set = 0, binding = 4) buffer QueueBlock { uint alive_queue[]; };
 
 layout(push_constant, scalar) uniform Push {
     vec3 sky;              // W/(m²·sr)
@@ -247,5 +225,5 @@ bool meet_surface(uint path) {
 void main() {
     uint path = queued_path(active_paths);
     bool alive = path != NO_PATH && meet_surface(path);
-    APPEND_TO_QUEUE(alive_paths, path, alive)
+    APPEND_TO_QUEUE(alive_queue, path, alive)
 }

@@ -5,9 +5,9 @@
 #include "photon_lists/draw.glsl"
 #include "photon_lists/node.glsl"
 
-layout(set = 0, binding = 6) buffer Pixels { uint pixels[]; };
-layout(set = 0, binding = 7) buffer NodeCount { uint node_count[]; };
-layout(set = 0, binding = 8) NODES_ACCESS buffer Nodes { uvec4 nodes[]; };
+layout(set = 0, binding = 0) buffer Pixels { uint pixels[]; };
+layout(set = 0, binding = 1) buffer NodeCount { uint node_count[]; };
+layout(set = 0, binding = 2) NODES_ACCESS buffer Nodes { uvec4 nodes[]; };
 
 void append(float depth, vec3 normal, uint material) {
     uint index = atomicAdd(node_count[0], 1u);

@@ -2,10 +2,9 @@
 #ifndef PHOTON_LISTS_DRAW
 #define PHOTON_LISTS_DRAW
 
+#include "groups/photon_lists.glsl"
 #include "geometry/normals.glsl"
 #include "photon_lists/view.glsl"
-
-layout(set = 0, binding = 5) uniform samplerBuffer views;
 
 layout(push_constant, scalar) uniform Push {
     uint view_index;
@@ -15,11 +14,11 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 float linear_depth(vec3 position_rs) {
-    return dot(texelFetch(views, 8 * int(push.view_index) + 3), vec4(position_rs, 1.0));
+    return dot(texelFetch(list_views, 8 * int(push.view_index) + 3), vec4(position_rs, 1.0));
 }
 
 vec4 clip_position(vec3 position_rs) {
-    ListView view = load_list_view(views, push.view_index);
+    ListView view = load_list_view(list_views, push.view_index);
     vec4 position = vec4(position_rs, 1.0);
     float w = dot(view.row_w, position);
     float scale = 2.0 / float(push.resolution);
@@ -37,9 +36,9 @@ vec3 front_normal(Instance instance, uint primitive) {
 bool is_kept(vec3 normal) {
     float best = 0.0;
     for (uint view = 0u; view < push.view_count; ++view) {
-        best = max(best, abs(dot(normal, texelFetch(views, 8 * int(view) + 5).xyz)));
+        best = max(best, abs(dot(normal, texelFetch(list_views, 8 * int(view) + 5).xyz)));
     }
-    return abs(dot(normal, texelFetch(views, 8 * int(push.view_index) + 5).xyz)) >= 0.5 * best;
+    return abs(dot(normal, texelFetch(list_views, 8 * int(push.view_index) + 5).xyz)) >= 0.5 * best;
 }
 
 #endif

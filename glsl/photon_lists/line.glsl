@@ -2,10 +2,10 @@
 #ifndef PHOTON_LISTS_LINE
 #define PHOTON_LISTS_LINE
 
+#include "groups/photon_lists.glsl"
 #include "photon_lists/hit.glsl"
 
 layout(set = 0, binding = 0) uniform usamplerBuffer rays;
-layout(set = 0, binding = 1) uniform samplerBuffer views;
 
 layout(push_constant, scalar) uniform Push {
     uint view_index;

@@ -6,18 +6,16 @@
 // paper writes each line into a row of a texture and takes the row's first hit; here the nearest is an atomic minimum of the distance, in m.
 // Depths come from the ray, not from interpolation along the line.
 
-layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
-layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
-layout(set = 0, binding = 4) buffer Hits { uint hits[]; };
+layout(set = 0, binding = 1) buffer Hits { uint hits[]; };
 
 layout(location = 0) flat in uint ray_index;
 
 void main() {
     uvec2 cell = uvec2(gl_FragCoord.xy);
     uint row = push.view_index * push.resolution + cell.y;
-    uvec4 list = texelFetch(pixels, int(row * push.resolution + cell.x));
+    uvec4 list = texelFetch(list_pixels, int(row * push.resolution + cell.x));
     if (list.x != NO_NODE) {
-        ListView view = load_list_view(views, push.view_index);
+        ListView view = load_list_view(list_views, push.view_index);
         PhotonRay ray = load_photon_ray(rays, ray_index);
         ViewRay along = view_ray(view, ray);
         vec2 center = vec2(cell) + 0.5;
@@ -35,7 +33,7 @@ void main() {
             float nearest = NO_HIT_DISTANCE;
             uint index = list.x;
             while (index != NO_NODE) {
-                uvec4 node = texelFetch(nodes, int(index));
+                uvec4 node = texelFetch(list_nodes, int(index));
                 nearest = min(nearest, distance_to_node(node, view, column, center, LINE_COLUMN, along, ray));
                 index = node.z;
             }

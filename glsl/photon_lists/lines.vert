@@ -9,7 +9,7 @@ layout(location = 0) flat out uint ray_index;
 
 void main() {
     ray_index = gl_InstanceIndex;
-    ListView view = load_list_view(views, push.view_index);
+    ListView view = load_list_view(list_views, push.view_index);
     ViewRay along = view_ray(view, load_photon_ray(rays, gl_InstanceIndex));
     vec2 range = clip_to_view(view, along, float(push.resolution), NO_HIT_DISTANCE);
     gl_Position = vec4(2.0, 2.0, 0.5, 1.0);

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/photon_lists.glsl"
 #include "photon_lists/hit.glsl"
 
 // What lies at the distance that a photon's lines found: of the nodes in whose columns the hit is, the one that the ray meets nearest to it.
@@ -7,11 +8,8 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer rays;
-layout(set = 0, binding = 1) uniform samplerBuffer views;
-layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
-layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
-layout(set = 0, binding = 4) buffer Hits { uint hits[]; };
-layout(set = 0, binding = 5) readonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 1) buffer Hits { uint hits[]; };
+layout(set = 0, binding = 2) readonly buffer Counts { uint counts[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint resolution;
@@ -21,7 +19,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) {
-    ListView view = load_list_view(views, view_index);
+    ListView view = load_list_view(list_views, view_index);
     ViewRay along = view_ray(view, ray);
     vec3 at = along.start + found * along.step;
     ivec2 first = ivec2(floor(clamp(at.xy / at.z, -2.0, float(push.resolution) + 2.0) - 0.5));
@@ -31,12 +29,12 @@ void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) 
         uint index = NO_NODE;
         if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(push.resolution)))) {
             uint row = view_index * push.resolution + uint(cell.y);
-            index = texelFetch(pixels, int(row * push.resolution + uint(cell.x))).x;
+            index = texelFetch(list_pixels, int(row * push.resolution + uint(cell.x))).x;
         }
         vec2 center = vec2(cell) + 0.5;
         Column column = column_of(view, center);
         while (index != NO_NODE) {
-            uvec4 node = texelFetch(nodes, int(index));
+            uvec4 node = texelFetch(list_nodes, int(index));
             float distance = distance_to_node(node, view, column, center, LINE_COLUMN, along, ray);
             take_nearer(closest, abs(distance - found), node);
             index = node.z;

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/photon_lists.glsl"
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "photon_lists/hit.glsl"
@@ -11,13 +12,10 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer rays;
-layout(set = 0, binding = 1) uniform samplerBuffer views;
-layout(set = 0, binding = 2) uniform usamplerBuffer pixels;
-layout(set = 0, binding = 3) uniform usamplerBuffer nodes;
-layout(set = 0, binding = 4) uniform usamplerBuffer blocks;
-layout(set = 0, binding = 5) readonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 6) writeonly buffer Hits { uint hits[]; };
-layout(set = 0, binding = 7) buffer Work { uint work[]; };  // steps, misses
+layout(set = 0, binding = 1) uniform usamplerBuffer blocks;
+layout(set = 0, binding = 2) readonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 3) writeonly buffer Hits { uint hits[]; };
+layout(set = 0, binding = 4) buffer Work { uint work[]; };  // steps, misses
 
 layout(push_constant, scalar) uniform Push {
     uint resolution;
@@ -37,14 +35,14 @@ void meet_list(uint first, ListView view, vec2 center, ViewRay along, PhotonRay 
     Column column = column_of(view, center);
     uint index = first;
     while (index != NO_NODE) {
-        uvec4 node = texelFetch(nodes, int(index));
+        uvec4 node = texelFetch(list_nodes, int(index));
         take_nearer(nearest, distance_to_node(node, view, column, center, MARCH_COLUMN, along, ray), node);
         index = node.z;
     }
 }
 
 void march(uint view_index, PhotonRay ray, inout NodeHit nearest) {
-    ListView view = load_list_view(views, view_index);
+    ListView view = load_list_view(list_views, view_index);
     ViewRay along = view_ray(view, ray);
     vec2 range = clip_to_view(view, along, float(push.resolution), nearest.distance);
     float slices_per_meter = SLICES / view.far;
@@ -80,7 +78,7 @@ void march(uint view_index, PhotonRay ray, inout NodeHit nearest) {
             occupied = touched != uvec4(0u);
         } else {
             uint row = view_index * push.resolution + cell.y;
-            uvec4 list = texelFetch(pixels, int(row * push.resolution + cell.x));
+            uvec4 list = texelFetch(list_pixels, int(row * push.resolution + cell.x));
             meet_list(list.x, view, vec2(cell) + 0.5, along, ray, nearest);
             occupied = false;
         }

@@ -1,11 +1,10 @@
 // Where a surface cut out by its alpha is there (glTF 2.0, alphaMode MASK).
+#include "groups/geometry.glsl"
 #include "geometry/material_textures.glsl"
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 bool is_there(uint material_index, float vertex_alpha, vec4 texcoord_sets) {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
-    Material material = load_material(materials, material_index);
+    Material material = load_material(drawn_materials, material_index);
     MaterialPoint point = material_factors(material, vec4(1.0, 1.0, 1.0, vertex_alpha));
     apply_base_color_texture(point, material, material_index, texcoords);
     return point.base_color.a >= material.alpha_cutoff;

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/photon_lists.glsl"
 #include "lib/octahedral.glsl"
 #include "photon_lists/node.glsl"
 #include "photon_lists/slices.glsl"
@@ -10,10 +11,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform samplerBuffer views;
-layout(set = 0, binding = 1) uniform usamplerBuffer pixels;
-layout(set = 0, binding = 2) uniform usamplerBuffer nodes;
-layout(set = 0, binding = 3) writeonly buffer Blocks { uvec4 blocks[]; };
+layout(set = 0, binding = 0) writeonly buffer Blocks { uvec4 blocks[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint resolution;
@@ -27,9 +25,9 @@ uvec4 slices_of_texel(ListView view, uint view_index, uvec2 texel) {
     Column column = column_of(view, vec2(texel) + 0.5);
     uvec4 found = uvec4(0u);
     uint row = view_index * push.resolution + texel.y;
-    uint index = texelFetch(pixels, int(row * push.resolution + texel.x)).x;
+    uint index = texelFetch(list_pixels, int(row * push.resolution + texel.x)).x;
     while (index != NO_NODE) {
-        uvec4 node = texelFetch(nodes, int(index));
+        uvec4 node = texelFetch(list_nodes, int(index));
         vec3 normal = unpack_direction(node.y);
         float depth = uintBitsToFloat(node.x);
         float stretch = view.near > 0.0 ? depth : 1.0;
@@ -49,7 +47,7 @@ void main() {
         uint within = gl_GlobalInvocationID.x - view_index * side * side;
         uvec2 first = uvec2(within % side, within / side) << LEVEL_BITS;
         uvec2 size = min(uvec2(4u), uvec2(push.resolution) - first);
-        ListView view = load_list_view(views, view_index);
+        ListView view = load_list_view(list_views, view_index);
         uvec4 found = uvec4(0u);
         for (uint place = 0u; place < size.x * size.y; ++place) {
             found |= slices_of_texel(view, view_index, first + uvec2(place % size.x, place / size.x));

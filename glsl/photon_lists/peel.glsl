@@ -2,7 +2,7 @@
 #include "lib/octahedral.glsl"
 #include "photon_lists/draw.glsl"
 
-layout(set = 0, binding = 6) uniform usampler2D previous;
+layout(set = 0, binding = 0) uniform usampler2D previous;
 
 layout(location = 0) out uvec4 layer;  // rgba32ui: depth | normal | material | 1, or infinitely far | 0 | 0 | 0
 

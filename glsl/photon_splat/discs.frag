@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
+#include "groups/surface.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/receiver.glsl"
 #include "photon_splat/tile.glsl"
@@ -10,11 +12,7 @@
 
 layout(early_fragment_tests) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 3) uniform sampler2D depth;
-layout(set = 0, binding = 4) uniform usampler2D surface;
-layout(set = 0, binding = 5) uniform usamplerBuffer tile_peaks;
-layout(set = 0, binding = 6) buffer SumBlock { uint sums[]; };
+layout(set = 0, binding = 2) buffer SumBlock { uint sums[]; };
 
 #include "photon_splat/sums.glsl"
 
@@ -43,7 +41,7 @@ void main() {
     vec3 offset = receiver.position_rs - center;
     float weight = disc_weight(offset, receiver.normal, disc_normal.xyz, disc_normal.w, squeeze, irradiance.w);
     if (receiver.valid && weight > 0.0) {
-        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, index).x));
+        float scale = fixed_point_scale(uintBitsToFloat(texelFetch(splat_peaks, index).x));
         add_to_sums(TILE_SAMPLES * (index - push.range.x) + index_in_tile(place), to_fixed(irradiance.xyz * scale, weight), uvec3(0u));
     }
 }

@@ -1,14 +1,14 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/octahedral.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
 
 // One corner of the rectangle of samples that a photon's disc may light; nothing where project.comp left the photon out.
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform usamplerBuffer discs;
-layout(set = 0, binding = 2) uniform usamplerBuffer places;
+layout(set = 0, binding = 0) uniform usamplerBuffer discs;
+layout(set = 0, binding = 1) uniform usamplerBuffer places;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
+#include "groups/surface.glsl"
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "photon_splat/answer.glsl"
@@ -18,32 +20,23 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) uniform usamplerBuffer state;
-layout(set = 0, binding = 5) uniform usamplerBuffer tiles;
-layout(set = 0, binding = 6) uniform usamplerBuffer tile_peaks;
-layout(set = 0, binding = 7) uniform usamplerBuffer levels;
-layout(set = 0, binding = 8) uniform usamplerBuffer cell_starts;
-layout(set = 0, binding = 9) uniform samplerBuffer sorted_centers;
-layout(set = 0, binding = 10) uniform samplerBuffer sorted_normals;
-layout(set = 0, binding = 11) uniform samplerBuffer sorted_irradiances;
-layout(set = 0, binding = 12, rgba32f) writeonly uniform image2D result;
-layout(set = 0, binding = 13) buffer SumBlock { uint sums[]; };
-layout(set = 0, binding = 14) uniform samplerBuffer sorted_squeezes;
+layout(set = 0, binding = 0) uniform usamplerBuffer cell_starts;
+layout(set = 0, binding = 1) uniform samplerBuffer sorted_centers;
+layout(set = 0, binding = 2) uniform samplerBuffer sorted_normals;
+layout(set = 0, binding = 3) uniform samplerBuffer sorted_irradiances;
+layout(set = 0, binding = 4, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 5) buffer SumBlock { uint sums[]; };
+layout(set = 0, binding = 6) uniform samplerBuffer sorted_squeezes;
 
 #include "photon_splat/sums.glsl"
 
 // A group takes one part of the photons of a crowded tile, and adds to `sums` what resolve.comp then makes the result of.
-layout(constant_id = 1) const uint CROWDED = 0u;
+layout(constant_id = 0) const uint CROWDED = 0u;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
     int level_count;
-    uint has_specular;
     ivec2 range;  // of tiles, if crowded
 } push;
 
@@ -113,7 +106,7 @@ void add_run(vec4 sphere, int first, int end, float scale) {
 }
 
 void add_level(vec4 sphere, ivec2 block, int level, float scale) {
-    uvec4 cells = texelFetch(levels, level);
+    uvec4 cells = texelFetch(splat_levels, level);
     ivec4 around = cells_around(block, block + BLOCK - 1, 0.0, level, cells);
     for (int y = around.y; y <= around.w; ++y) {
         int first = int(texelFetch(cell_starts, cell_index(ivec2(around.x, y), cells)).x);
@@ -127,7 +120,7 @@ void add_level(vec4 sphere, ivec2 block, int level, float scale) {
 void store(ivec2 place, vec3 irradiance) {
     vec3 light = irradiance;
     if (push.downscale == 1) {
-        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, place, 0) : vec4(0.0);
+        vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, place, 0) : vec4(0.0);
         light = answer(irradiance, texelFetch(surface, place, 0), lobe);
     }
     imageStore(result, place, vec4(light, 1.0));
@@ -135,8 +128,8 @@ void store(ivec2 place, vec3 irradiance) {
 
 void main() {
     int tile = CROWDED != 0u
-        ? tile_in_range(listed_tile(state, tiles, STATE_CROWDED, gl_WorkGroupID.z), push.range)
-        : listed_tile(state, tiles, STATE_TILES, gl_WorkGroupID.y);
+        ? tile_in_range(listed_tile(splat_state, splat_tiles, STATE_CROWDED, gl_WorkGroupID.z), push.range)
+        : listed_tile(splat_state, splat_tiles, STATE_TILES, gl_WorkGroupID.y);
     if (CROWDED != 0u) {
         first_taken = int(gl_WorkGroupID.y * PART_PHOTONS);
         end_taken = first_taken + int(PART_PHOTONS);
@@ -151,9 +144,9 @@ void main() {
         sums_high[which] = uvec3(0u);
     }
     vec4 sphere = bounding_sphere();
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, max(tile, 0)).x));
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(splat_peaks, max(tile, 0)).x));
     if (sphere.w >= 0.0) {
-        uint filled = texelFetch(state, int(STATE_LEVELS)).x;
+        uint filled = texelFetch(splat_state, int(STATE_LEVELS)).x;
         ivec2 block = sample_of_tile(tile, size, 0) & ~(BLOCK - 1);
         for (int level = 0; level < push.level_count; ++level) {
             if ((filled >> level & 1u) != 0u) {

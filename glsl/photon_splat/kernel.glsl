@@ -6,11 +6,8 @@
 #ifndef PHOTON_SPLAT_KERNEL
 #define PHOTON_SPLAT_KERNEL
 
+#include "groups/splat.glsl"
 #include "lib/vectors.glsl"
-
-layout(constant_id = 0) const uint GAUSSIAN = 0u;
-// 1: discs may be ellipses.
-layout(constant_id = 2) const uint ELLIPTIC = 0u;
 
 // K(0), by which stored fluxes are multiplied already.
 float kernel_peak() {

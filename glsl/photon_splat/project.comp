@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
+#include "groups/surface.glsl"
 #include "photons/records.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
@@ -15,17 +17,15 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform usamplerBuffer photons;
-layout(set = 0, binding = 2) uniform usamplerBuffer counts;
-layout(set = 0, binding = 3) uniform usamplerBuffer levels;
-layout(set = 0, binding = 4) writeonly buffer DiscBlock { uvec4 discs[]; };
-layout(set = 0, binding = 5) writeonly buffer PlaceBlock { uvec2 places[]; };  // cell, or NO_CELL · place among its photons
-layout(set = 0, binding = 6) buffer CellCountBlock { uint cell_counts[]; };
-layout(set = 0, binding = 7) buffer CellPeakBlock { uint cell_peaks[]; };  // the brightest of each cell's discs, W/m², as a float's bits
-layout(set = 0, binding = 8) buffer StateBlock { uint state[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer photons;
+layout(set = 0, binding = 1) uniform usamplerBuffer counts;
+layout(set = 0, binding = 2) writeonly buffer DiscBlock { uvec4 discs[]; };
+layout(set = 0, binding = 3) writeonly buffer PlaceBlock { uvec2 places[]; };  // cell, or NO_CELL · place among its photons
+layout(set = 0, binding = 4) buffer CellCountBlock { uint cell_counts[]; };
+layout(set = 0, binding = 5) buffer CellPeakBlock { uint cell_peaks[]; };  // the brightest of each cell's discs, W/m², as a float's bits
+layout(set = 0, binding = 6) buffer StateBlock { uint state[]; };
 
-layout(set = 0, binding = 9) uniform samplerBuffer ellipses;
+layout(set = 0, binding = 7) uniform samplerBuffer ellipses;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
@@ -131,7 +131,7 @@ void main() {
             while (level < push.level_count - 1 && reach > reach_of_level(level)) {
                 ++level;
             }
-            uvec4 cells = texelFetch(levels, level);
+            uvec4 cells = texelFetch(splat_levels, level);
             vec2 size = vec2(lattice_size(push.image_size, push.downscale));
             ivec2 cell = ivec2(clamp(extent.center, vec2(0.0), size - 0.5)) >> cell_log2(level);
             place.x = uint(cell_index(cell, cells));

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
+#include "groups/surface.glsl"
 #include "photon_splat/answer.glsl"
 #include "photon_splat/fixed_point.glsl"
 #include "photon_splat/lattice.glsl"
@@ -9,18 +11,12 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usampler2D surface;
-layout(set = 0, binding = 1) uniform sampler2D specular;
-layout(set = 0, binding = 2) uniform usamplerBuffer state;
-layout(set = 0, binding = 3) uniform usamplerBuffer tiles;
-layout(set = 0, binding = 4) uniform usamplerBuffer tile_peaks;
-layout(set = 0, binding = 5) uniform usamplerBuffer sums;
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 0) uniform usamplerBuffer sums;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D result;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
-    uint has_specular;
     uint list;
     ivec2 range;  // of tiles
 } push;
@@ -35,17 +31,17 @@ void resolve(int tile, int which) {
     int first = 2 * (TILE_SAMPLES * (tile - push.range.x) + index_in_tile(gl_LocalInvocationIndex, which));
     uvec4 low = texelFetch(sums, first);
     uvec4 high = texelFetch(sums, first + 1);
-    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(tile_peaks, tile).x));
+    float scale = fixed_point_scale(uintBitsToFloat(texelFetch(splat_peaks, tile).x));
     vec3 sum = from_fixed(low.xyz, high.xyz, scale);
     if (push.downscale == 1) {
-        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+        vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         sum = answer(sum, texelFetch(surface, pixel, 0), lobe);
     }
     imageStore(result, place, vec4(sum, 1.0));
 }
 
 void main() {
-    int tile = tile_in_range(listed_tile(state, tiles, push.list), push.range);
+    int tile = tile_in_range(listed_tile(splat_state, splat_tiles, push.list), push.range);
     if (tile != NO_TILE) {
         [[dont_unroll]] for (int which = 0; which < 4; ++which) {
             resolve(tile, which);

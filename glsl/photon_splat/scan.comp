@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
 #include "photon_splat/levels.glsl"
 
 // One group turns the counts of a row of cells into where each cell's photons start in the sorted list. Rows stand in it in any order, the
@@ -8,10 +9,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer levels;
-layout(set = 0, binding = 1) uniform usamplerBuffer cell_counts;
-layout(set = 0, binding = 2) writeonly buffer StartBlock { uint cell_starts[]; };
-layout(set = 0, binding = 3) buffer SortedBlock { uint sorted_count[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer cell_counts;
+layout(set = 0, binding = 1) writeonly buffer StartBlock { uint cell_starts[]; };
+layout(set = 0, binding = 2) buffer SortedBlock { uint sorted_count[]; };
 
 layout(push_constant, scalar) uniform Push { uint row_count; } push;
 
@@ -20,11 +20,11 @@ shared uint row_start;
 
 void scan_row(int row) {
     int level = 0;
-    uvec4 cells = texelFetch(levels, 0);
+    uvec4 cells = texelFetch(splat_levels, 0);
     while (row >= int(cells.y)) {
         row -= int(cells.y);
         ++level;
-        cells = texelFetch(levels, level);
+        cells = texelFetch(splat_levels, level);
     }
     int self = int(gl_LocalInvocationIndex);
     int run = (int(cells.x) + 63) / 64;

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
 #include "lib/pixels.glsl"
 #include "photon_splat/levels.glsl"
 #include "photon_splat/state.glsl"
@@ -9,13 +10,12 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer levels;
-layout(set = 0, binding = 1) uniform usamplerBuffer cell_peaks;
-layout(set = 0, binding = 2) uniform usamplerBuffer cell_counts;
-layout(set = 0, binding = 3) writeonly buffer TilePeakBlock { uint tile_peaks[]; };
-layout(set = 0, binding = 4) writeonly buffer TileBlock { uint tiles[]; };
-layout(set = 0, binding = 5) writeonly buffer CrowdedBlock { uint crowded[]; };
-layout(set = 0, binding = 6) buffer StateBlock { uint state[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer cell_peaks;
+layout(set = 0, binding = 1) uniform usamplerBuffer cell_counts;
+layout(set = 0, binding = 2) writeonly buffer TilePeakBlock { uint tile_peaks[]; };
+layout(set = 0, binding = 3) writeonly buffer TileBlock { uint tiles[]; };
+layout(set = 0, binding = 4) writeonly buffer CrowdedBlock { uint crowded[]; };
+layout(set = 0, binding = 5) buffer StateBlock { uint state[]; };
 
 layout(push_constant, scalar) uniform Push {
     ivec2 tile_count;
@@ -47,7 +47,7 @@ void main() {
         if ((filled >> level & 1u) == 0u) {
             continue;
         }
-        uvec4 cells = texelFetch(levels, level);
+        uvec4 cells = texelFetch(splat_levels, level);
         ivec4 around = cells_around(TILE_SIDE * tile, TILE_SIDE * tile + TILE_SIDE - 1, 1.0, level, cells);
         for (int y = around.y; y <= around.w; ++y) {
             for (int x = around.x; x <= around.z; ++x) {

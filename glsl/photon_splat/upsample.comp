@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/splat.glsl"
+#include "groups/surface.glsl"
 #include "photon_splat/answer.glsl"
 #include "photon_splat/receiver.glsl"
 #include "photon_splat/listed_tile.glsl"
@@ -15,19 +17,12 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) uniform usamplerBuffer state;
-layout(set = 0, binding = 5) uniform usamplerBuffer tiles;
-layout(set = 0, binding = 6) uniform sampler2D irradiance;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image2D result;
+layout(set = 0, binding = 0) uniform sampler2D irradiance;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D result;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
     int downscale;
-    uint has_specular;
     uint list;
 } push;
 
@@ -92,7 +87,7 @@ void upsample(ivec2 place, ivec2 size) {
                 float along = camera.depth_range > 0.0 ? 1.0 : dot(at.position_rs - camera.position_rs, camera.forward);
                 vec2 pixel_place = splat_coordinates(vec2(pixel) + 0.5, push.downscale) - 0.5;
                 vec3 light = interpolated(at, step_size * along, pixel_place, corner, samples);
-                vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+                vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
                 imageStore(result, pixel, vec4(answer(light, texelFetch(surface, pixel, 0), lobe), 1.0));
             }
         }
@@ -100,7 +95,7 @@ void upsample(ivec2 place, ivec2 size) {
 }
 
 void main() {
-    int tile = listed_tile(state, tiles, push.list);
+    int tile = listed_tile(splat_state, splat_tiles, push.list);
     ivec2 size = lattice_size(push.image_size, push.downscale);
     for (int which = 0; which < 4; ++which) {
         ivec2 place = sample_of_tile(max(tile, 0), size, which);

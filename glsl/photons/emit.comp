@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
+#include "groups/light_views.glsl"
 #include "lib/lights.glsl"
 #include "light_views/flux.glsl"
 #include "photons/arrivals.glsl"
@@ -26,17 +28,13 @@ layout(set = 0, binding = 1) uniform usamplerBuffer levels;
 layout(set = 0, binding = 2) uniform usamplerBuffer pyramid;
 layout(set = 0, binding = 3) uniform usamplerBuffer choice;
 layout(set = 0, binding = 4) uniform usamplerBuffer blocks;
-layout(set = 0, binding = 5) uniform usamplerBuffer views;
-layout(set = 0, binding = 6) uniform usamplerBuffer lights;
-layout(set = 0, binding = 7) uniform usamplerBuffer tile_views;  // the view of each square of 16x16 texels
-layout(set = 0, binding = 8) uniform sampler2D light_depth;
-layout(set = 0, binding = 9) uniform usampler2D specular_surface;
-layout(set = 0, binding = 10) uniform usampler2D specular_layer;
-layout(set = 0, binding = 11) uniform usamplerBuffer materials;
-layout(set = 0, binding = 12) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
-layout(set = 0, binding = 13) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer tile_views;  // the view of each square of 16x16 texels
+layout(set = 0, binding = 6) uniform usampler2D specular_surface;
+layout(set = 0, binding = 7) uniform usampler2D specular_layer;
+layout(set = 0, binding = 8) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
+layout(set = 0, binding = 9) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
 
-layout(set = 0, binding = 14) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
+layout(set = 0, binding = 10) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint tiles_per_row;
@@ -160,7 +158,7 @@ void main() {
     float texel_width = view.tangent_step * (is_orthographic(view) ? 1.0 : linear_depth(view, depth));
     float lit_way = is_orthographic(view) ? push.radius : distance(position, view.origin_rs);
     vec3 flux = incident_flux(load_light(lights, view.light), view, vec2(texel) + 0.5, depth);
-    Material material = load_material(materials, layer.y & ~SURFACE_FRONT);
+    Material material = load_material(drawn_materials, layer.y & ~SURFACE_FRONT);
     bool front = (layer.y & SURFACE_FRONT) != 0u;
     flux *= transmittance_behind(material, front, length(ray_of_tangent(view, middle)) * linear_depth(view, depth));
     flux *= place.weight / float(of_block);

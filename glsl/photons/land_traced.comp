@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
 #include "photons/landing.glsl"
@@ -8,20 +9,6 @@
 // mapped normal (photons/landing.glsl).
 
 layout(local_size_x = 64) in;
-
-// The MATERIAL_ bits of the texture kinds that any material has.
-layout(constant_id = 3) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
-// 1: some mesh has vertex colors; some surface has a normal map and the tangents to use it.
-layout(constant_id = 6) const uint VERTEX_COLORS = 1u;
-layout(constant_id = 7) const uint NORMAL_MAPS = 1u;
-
-layout(set = 0, binding = 9) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 10) uniform samplerBuffer corner_colors;
-layout(set = 0, binding = 11) uniform samplerBuffer corner_texcoords;
-layout(set = 0, binding = 12) uniform samplerBuffer corner_tangents;
-layout(set = 0, binding = 13) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 14) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 15) uniform samplerBuffer texels;
 
 // Texture `kind` of the material at the texture coordinates of both sets; white where it has none.
 vec4 texture_of(Material material, uint index, uint kind, vec4 sets) {

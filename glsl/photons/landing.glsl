@@ -9,6 +9,7 @@
 //
 // θ the angle of incidence.
 
+#include "groups/geometry.glsl"
 #include "photons/append.glsl"
 #include "photons/arrivals.glsl"
 #include "photons/beam.glsl"
@@ -20,16 +21,15 @@
 layout(set = 0, binding = 0) uniform usamplerBuffer rays;
 layout(set = 0, binding = 1) uniform usamplerBuffer hits;
 layout(set = 0, binding = 2) uniform usamplerBuffer choice;
-layout(set = 0, binding = 3) uniform usamplerBuffer materials;
-layout(set = 0, binding = 4) writeonly buffer PhotonBlock { uvec4 photons[]; };
-layout(set = 0, binding = 5) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
-layout(set = 0, binding = 6) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
-layout(set = 0, binding = 7) buffer CountBlock { uint counts[]; };
-layout(set = 0, binding = 8) buffer ArrivalCountBlock { uint arrival_counts[]; };
+layout(set = 0, binding = 3) writeonly buffer PhotonBlock { uvec4 photons[]; };
+layout(set = 0, binding = 4) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
+layout(set = 0, binding = 5) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
+layout(set = 0, binding = 6) buffer CountBlock { uint counts[]; };
+layout(set = 0, binding = 7) buffer ArrivalCountBlock { uint arrival_counts[]; };
 
-layout(set = 0, binding = 16) uniform samplerBuffer beams;
-layout(set = 0, binding = 17) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
-layout(set = 0, binding = 18) writeonly buffer EllipseBlock { vec4 ellipses[]; };
+layout(set = 0, binding = 8) uniform samplerBuffer beams;
+layout(set = 0, binding = 9) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
+layout(set = 0, binding = 10) writeonly buffer EllipseBlock { vec4 ellipses[]; };
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;          // from render space to that of the traced scene
@@ -61,7 +61,7 @@ Landing arrive(uint index, uvec4 hit) {
     vec3 face = unpack_direction(hit.y);
     float distance = uintBitsToFloat(hit.x);
     landing.front = dot(face, landing.photon.direction) < 0.0;
-    landing.material = load_material(materials, hit.z);
+    landing.material = load_material(drawn_materials, hit.z);
     landing.normal = landing.front ? face : -face;
     landing.shading_normal = landing.normal;
     landing.may_diffuse = false;

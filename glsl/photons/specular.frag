@@ -1,12 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/normals.glsl"
 #include "light_views/view.glsl"
 
 // One texel of a light view on a primitive without textures that has a specular lobe: the surface, and the flux that photons are drawn by
 // (photons/specular_targets.glsl; the mask of Quyen 2014, section 3.3.1.1, in watts instead of ones).
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 #include "photons/specular_targets.glsl"
 
@@ -16,7 +15,7 @@ layout(location = 2) flat in uint instance_index;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
     bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);

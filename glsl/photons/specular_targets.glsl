@@ -3,12 +3,11 @@
 // that it may be a little off: Δω is step²·cos³ here, at most 10⁻⁴ off at 128 texels a side. Of light that a closed body takes on its way
 // to the texel nothing is received.
 
+#include "groups/light_views.glsl"
 #include "lib/brdf.glsl"
 #include "lib/lights.glsl"
 #include "photons/medium.glsl"
 #include "photons/surface_texel.glsl"
-
-layout(set = 0, binding = 6) uniform usamplerBuffer lights;
 
 layout(location = 0) out uvec4 specular_surface;
 layout(location = 1) out uvec2 specular_layer;

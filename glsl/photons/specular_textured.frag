@@ -1,12 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/geometry.glsl"
 #include "geometry/normal_map.glsl"
 #include "light_views/view.glsl"
 
 // One texel of a light view on a textured primitive that has a specular lobe: the surface, and the flux that photons are drawn by
 // (photons/specular_targets.glsl). Where a cut-out is a hole the view holds another depth, so that nothing of it comes here.
-
-layout(set = 0, binding = 1) uniform usamplerBuffer materials;
 
 #include "photons/specular_targets.glsl"
 
@@ -19,7 +18,7 @@ layout(location = 4) in vec4 texcoord_sets;
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Instance instance = load_instance(instances, instance_index);
-    Material material = load_material(materials, instance.material);
+    Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, vertex_color);
     apply_base_color_texture(point, material, instance.material, texcoords);
     apply_lobe_textures(point, material, instance.material, texcoords);

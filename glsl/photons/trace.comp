@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 
 // The nearest surface on one photon's way, by the scene's hierarchy (lib/bvh.glsl): exact, where lists of pixels are not.
 
@@ -7,9 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer rays;
 layout(set = 0, binding = 1) uniform usamplerBuffer counts;
-layout(set = 0, binding = 2) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 3) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 4) writeonly buffer HitBlock { uint hits[]; };
+layout(set = 0, binding = 2) writeonly buffer HitBlock { uint hits[]; };
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;  // from render space to the hierarchy's

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "lib/vpl.glsl"
@@ -13,16 +14,11 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D specular;
-layout(set = 0, binding = 4) uniform samplerBuffer vpls;
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D diffuse;
+layout(set = 0, binding = 0) uniform samplerBuffer vpls;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D diffuse;
 
 layout(push_constant, scalar) uniform Push {
     uint vpl_count;
-    uint has_specular;  // 0: no material has a specular lobe, `specular` is not read
 } push;
 
 struct Receiver {
@@ -37,7 +33,7 @@ Receiver load_receiver(ivec2 pixel, ivec2 size) {
         return Receiver(vec3(0.0), vec3(0.0), vec3(0.0));
     }
     vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
-    vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+    vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
     Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
     return Receiver(position_rs, point.normal, indirect_diffuse_albedo(point) * INVERSE_PI);
 }

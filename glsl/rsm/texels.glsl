@@ -1,5 +1,6 @@
 // What the texels of a light tile add to the distribution that virtual point lights are drawn from.
 
+#include "groups/light_views.glsl"
 #include "lib/color.glsl"
 #include "lib/hilbert.glsl"
 #include "lib/lights.glsl"
@@ -8,10 +9,6 @@
 const uint TILE_TEXELS = 256u;
 
 layout(set = 0, binding = 0) readonly buffer Tiles { LightTile tiles[]; };
-layout(set = 0, binding = 1) uniform usamplerBuffer views;
-layout(set = 0, binding = 2) uniform sampler2D light_depth;
-layout(set = 0, binding = 3) uniform usampler2D light_normal;
-layout(set = 0, binding = 4) uniform sampler2D light_flux;
 
 ivec2 texel_of_tile(LightTile tile, uint index) {
     return tile.origin + hilbert_decode(index, tile.orientation);

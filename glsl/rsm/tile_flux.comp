@@ -7,7 +7,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 5) writeonly buffer TileFluxes { vec4 tile_fluxes[]; };
+layout(set = 0, binding = 1) writeonly buffer TileFluxes { vec4 tile_fluxes[]; };
 
 layout(push_constant, scalar) uniform Push { uint tile_count; } push;
 

@@ -18,8 +18,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 5) readonly buffer FluxPrefix { vec4 flux_prefix[]; };
-layout(set = 0, binding = 6) writeonly buffer Vpls { vec4 vpls[]; };
+layout(set = 0, binding = 1) readonly buffer FluxPrefix { vec4 flux_prefix[]; };
+layout(set = 0, binding = 2) writeonly buffer Vpls { vec4 vpls[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint tile_count;

@@ -1,15 +1,14 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 
 // For each ray of a list that hits something: whether a ray mirrored at the surface, from where `offset_ray_origin` puts it, is
 // blocked at once, and how far that is from the hit.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 1) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 2) uniform samplerBuffer rays;     // origin, t_max; direction, unused
-layout(set = 0, binding = 3) uniform samplerBuffer corners;  // three a triangle, in the order of the host's list
+layout(set = 0, binding = 0) uniform samplerBuffer rays;     // origin, t_max; direction, unused
+layout(set = 0, binding = 1) uniform samplerBuffer corners;  // three a triangle, in the order of the host's list
 
 #include "lib/bvh.glsl"
 #include "lib/ray_offset.glsl"
@@ -20,7 +19,7 @@ struct Leaving {
     float offset;
 };
 
-layout(set = 0, binding = 4) writeonly buffer Leavings { Leaving leavings[]; };
+layout(set = 0, binding = 2) writeonly buffer Leavings { Leaving leavings[]; };
 
 void main() {
     int ray = int(gl_GlobalInvocationID.x);

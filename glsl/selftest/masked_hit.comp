@@ -1,14 +1,13 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 
 // The nearest hit of each ray of a list, where flagged triangles are cut away beyond half their height over corner 1, and
 // beside it whether anything blocks the ray.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 1) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 2) uniform samplerBuffer rays;  // origin, t_max; direction, unused
+layout(set = 0, binding = 0) uniform samplerBuffer rays;  // origin, t_max; direction, unused
 
 bool accepts_hit(uint triangle, vec2 barycentric) {
     return barycentric.x <= 0.5;
@@ -22,7 +21,7 @@ struct MaskedHit {
     uint blocked;
 };
 
-layout(set = 0, binding = 3) writeonly buffer Hits { MaskedHit hits[]; };
+layout(set = 0, binding = 1) writeonly buffer Hits { MaskedHit hits[]; };
 
 void main() {
     int ray = int(gl_GlobalInvocationID.x);

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -11,15 +13,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer path_states;
-layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
-layout(set = 0, binding = 4) uniform usamplerBuffer path_seeds;
-layout(set = 0, binding = 5) uniform usamplerBuffer vertices;
-layout(set = 0, binding = 6) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 7) buffer PointBlock { uvec4 points[]; };
-layout(set = 0, binding = 8) buffer QueueBlock { uint point_queue[]; };
+layout(set = 0, binding = 0) buffer PointBlock { uvec4 points[]; };
+layout(set = 0, binding = 1) buffer QueueBlock { uint point_queue[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint depth;  // vertices before this one
@@ -30,7 +25,7 @@ bool measure(uint path) {
     if ((texelFetch(path_flags, int(path)).x & FLAG_ALL_SPECULAR) == 0u) {
         return false;
     }
-    Vertex vertex = load_vertex(vertices, path);
+    Vertex vertex = load_vertex(path_vertices, path);
     vec3 to_viewer = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
     vec3 viewer = local_viewer(frame_around(vertex.normal), to_viewer);
     float share = lobe_shares(vertex.matter, viewer.z).x;
@@ -41,7 +36,7 @@ bool measure(uint path) {
     }
     vec3 throughput = texelFetch(path_states, int(path)).rgb / share;
     if (SPECULAR_LOBES != 0u) {
-        uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+        uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
         throughput *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     }
     uint first = uint(POINT_TEXELS) * path;

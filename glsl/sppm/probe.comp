@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
+#include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -12,11 +14,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer point_queue;
-layout(set = 0, binding = 1) uniform usamplerBuffer path_seeds;
-layout(set = 0, binding = 2) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 3) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 4) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 5) buffer PointBlock { uvec4 points[]; };
+layout(set = 0, binding = 1) buffer PointBlock { uvec4 points[]; };
 
 layout(push_constant, scalar) uniform Push {
     float radius;  // m

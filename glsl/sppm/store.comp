@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/paths.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 #include "path/vertex.glsl"
@@ -9,14 +10,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer alive_paths;
-layout(set = 0, binding = 1) uniform samplerBuffer path_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer path_states;
-layout(set = 0, binding = 3) uniform usamplerBuffer path_flags;
-layout(set = 0, binding = 4) uniform usamplerBuffer vertices;
-layout(set = 0, binding = 5) buffer PhotonBlock { uvec4 photons[]; };
-layout(set = 0, binding = 6) buffer QueueBlock { uint photon_queue[]; };
-layout(set = 0, binding = 7) buffer CountBlock { uint bucket_counts[]; };
+layout(set = 0, binding = 0) buffer PhotonBlock { uvec4 photons[]; };
+layout(set = 0, binding = 1) buffer QueueBlock { uint photon_queue[]; };
+layout(set = 0, binding = 2) buffer CountBlock { uint bucket_counts[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint depth;          // vertices before this one
@@ -30,7 +26,7 @@ void main() {
     bool wanted = false;
     Vertex vertex;
     if (path != NO_PATH) {
-        vertex = load_vertex(vertices, path);
+        vertex = load_vertex(path_vertices, path);
         wanted = max3(vertex.matter.diffuse_albedo) > 0.0;
     }
     uvec4 voters = subgroupBallot(wanted);
@@ -45,7 +41,7 @@ void main() {
         vec3 to_light = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
         vec3 flux = texelFetch(path_states, int(path)).rgb;
         if (SPECULAR_LOBES != 0u) {
-            uvec4 last = texelFetch(vertices, VERTEX_TEXELS * int(path) + 4);
+            uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
             flux *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
         }
         uint bucket = bucket_of(ivec3(floor(vertex.position_rs * push.inverse_cell)), push.bits);

@@ -1,17 +1,16 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 
 // The nearest hit of each ray of a list.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 1) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 2) uniform samplerBuffer rays;  // origin, t_max; direction, unused
+layout(set = 0, binding = 0) uniform samplerBuffer rays;  // origin, t_max; direction, unused
 
 #include "lib/bvh.glsl"
 
-layout(set = 0, binding = 3) writeonly buffer Hits { Hit hits[]; };
+layout(set = 0, binding = 1) writeonly buffer Hits { Hit hits[]; };
 
 void main() {
     int ray = int(gl_GlobalInvocationID.x);

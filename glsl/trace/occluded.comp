@@ -1,17 +1,16 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
 
 // Whether each ray of a list is blocked: 1 or 0.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 1) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 2) uniform samplerBuffer rays;  // origin, t_max; direction, unused
+layout(set = 0, binding = 0) uniform samplerBuffer rays;  // origin, t_max; direction, unused
 
 #include "lib/bvh.glsl"
 
-layout(set = 0, binding = 3) writeonly buffer Blocked { uint blocked[]; };
+layout(set = 0, binding = 1) writeonly buffer Blocked { uint blocked[]; };
 
 void main() {
     int ray = int(gl_GlobalInvocationID.x);

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/light_views.glsl"
 #include "lib/lights.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/color.glsl"
@@ -11,11 +12,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) readonly buffer Tiles { LightTile tiles[]; };
-layout(set = 0, binding = 1) uniform usamplerBuffer views;
-layout(set = 0, binding = 2) uniform sampler2D light_depth;
-layout(set = 0, binding = 3) uniform usampler2D light_normal;
-layout(set = 0, binding = 4) uniform sampler2D light_flux;
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D blocks;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D blocks;
 
 layout(push_constant, scalar) uniform Push { uint tile_count; } push;
 

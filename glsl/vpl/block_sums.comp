@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/light_views.glsl"
 #include "lib/lights.glsl"
 #include "vpl/blocks.glsl"
 
@@ -8,10 +9,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer views;
-layout(set = 0, binding = 1) uniform sampler2D blocks;
-layout(set = 0, binding = 2, rgba32f) coherent uniform image2D sums;
-layout(set = 0, binding = 3) writeonly buffer ViewFluxes { vec4 view_fluxes[]; };
+layout(set = 0, binding = 0) uniform sampler2D blocks;
+layout(set = 0, binding = 1, rgba32f) coherent uniform image2D sums;
+layout(set = 0, binding = 2) writeonly buffer ViewFluxes { vec4 view_fluxes[]; };
 
 void main() {
     LightView view = load_view(views, gl_WorkGroupID.x);

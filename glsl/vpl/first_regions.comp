@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "vpl/region_planes.glsl"
@@ -13,11 +14,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D planes;
-layout(set = 0, binding = 4, rgba32ui) writeonly uniform uimage2D normals;
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D planes;
+layout(set = 0, binding = 2, rgba32ui) writeonly uniform uimage2D normals;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;              // pixels

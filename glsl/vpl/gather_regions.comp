@@ -11,9 +11,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 5) uniform samplerBuffer vpls;
-layout(set = 0, binding = 6) uniform usamplerBuffer list;
-layout(set = 0, binding = 7, rgba32f) uniform image2D irradiance;
+layout(set = 0, binding = 2) uniform samplerBuffer vpls;
+layout(set = 0, binding = 3) uniform usamplerBuffer list;
+layout(set = 0, binding = 4, rgba32f) uniform image2D irradiance;
 
 #include "vpl/gather.glsl"
 #include "vpl/receivers.glsl"

@@ -10,8 +10,8 @@
 
 layout(early_fragment_tests) in;
 
-layout(set = 0, binding = 5) uniform samplerBuffer vpls;
-layout(set = 0, binding = 6) buffer Invocations { uint invocations[]; };
+layout(set = 0, binding = 2) uniform samplerBuffer vpls;
+layout(set = 0, binding = 3) buffer Invocations { uint invocations[]; };
 
 layout(location = 0) out vec4 irradiance;
 

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/vectors.glsl"
@@ -13,7 +14,6 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform sampler2D square_planes;
 layout(set = 0, binding = 1) uniform sampler2D region_planes;
 layout(set = 0, binding = 2, rgba32f) uniform image2D irradiance;
-layout(set = 0, binding = 3) uniform CameraBlock { Camera camera; };
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;              // pixels

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/scene.glsl"
 #include "lib/vectors.glsl"
@@ -11,7 +12,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
 layout(set = 0, binding = 1) uniform sampler2D quarter_planes;
 layout(set = 0, binding = 2) uniform usampler2D quarter_normals;
 layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D planes;

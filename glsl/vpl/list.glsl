@@ -8,7 +8,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
-layout(set = 0, binding = 5) buffer List { uint list[]; };
+layout(set = 0, binding = 0) buffer List { uint list[]; };
 
 layout(constant_id = 0) const uint LISTS = 0u;        // 0: nobody wants the list
 layout(constant_id = 1) const uint GROUP_REGIONS = 1u;  // regions that one group gathers for

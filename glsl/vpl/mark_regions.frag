@@ -1,13 +1,12 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "vpl/regions.glsl"
 
 // A texel of the flattened image marks the stencil if its region is valid (alg. 3.1 of Quyen 2014): the others are discarded, so that no
 // export of stencil values is needed.
 
-layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D surface;
-layout(set = 0, binding = 2) uniform sampler2D planes;
+layout(set = 0, binding = 0) uniform sampler2D planes;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;         // pixels

@@ -1,10 +1,11 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
+#include "groups/vpl_visibility.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
 #include "lib/vpl.glsl"
 #include "vpl/paths.glsl"
-#include "vpl/rays.glsl"
 
 // One invocation sends the light of one VPL on in a random direction, cosine-distributed as a Lambertian surface reflects it, and finds
 // what it meets (Keller 1997): distance [m], barycentric coordinates of corners 1 and 2, bits of the triangle's number.
@@ -12,11 +13,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform samplerBuffer vpls;
-layout(set = 0, binding = 1) uniform usamplerBuffer bvh_nodes;
-layout(set = 0, binding = 2) uniform samplerBuffer bvh_triangles;
-layout(set = 0, binding = 3) uniform RaysBlock { VplRays rays; };
-layout(set = 0, binding = 4) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 5) writeonly buffer Hits { vec4 hits[]; };
+layout(set = 0, binding = 1) writeonly buffer Hits { vec4 hits[]; };
 
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
 
@@ -38,7 +35,7 @@ void main() {
         float azimuth = 2.0 * PI * random.y;
         vec3 local = vec3(radius * cos(azimuth), radius * sin(azimuth), sqrt(max(1.0 - random.x, 1e-7)));
         vec3 normal = normalize(vpl.normal);
-        vec3 origin = offset_ray_origin(vpl.position_rs + rays.shift, normal) + normal * rays.offset;
+        vec3 origin = offset_ray_origin(vpl.position_rs + vpl_rays.shift, normal) + normal * vpl_rays.offset;
         Hit hit = closest_hit(origin, to_world(frame_around(normal), local), 3e38);
         found = vec4(hit.distance, hit.barycentric, uintBitsToFloat(hit.triangle));
     }

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
+#include "groups/vpl_visibility.glsl"
 #include "lib/brdf.glsl"
 #include "lib/sobol.glsl"
 #include "lib/texels.glsl"
@@ -7,7 +9,6 @@
 #include "lib/vpl.glsl"
 #include "vpl/disc.glsl"
 #include "vpl/paths.glsl"
-#include "vpl/rays.glsl"
 
 // One invocation makes a VPL where a path met a surface (Keller 1997). With Φ the flux of the VPL that it left, which n paths leave of N
 // in its bounce, and ρ = indirect_diffuse_albedo() there,
@@ -23,21 +24,8 @@
 
 layout(local_size_x = 64) in;
 
-// The MATERIAL_ bits of the texture kinds that any material has.
-layout(constant_id = 0) const uint TEXTURES = MATERIAL_ALL_TEXTURES;
-layout(constant_id = 1) const uint VERTEX_COLORS = 1u;
-
 layout(set = 0, binding = 0) uniform samplerBuffer hits;
-layout(set = 0, binding = 1) uniform RaysBlock { VplRays rays; };
-layout(set = 0, binding = 2) uniform usamplerBuffer sobol;
-layout(set = 0, binding = 3) uniform usamplerBuffer triangles;
-layout(set = 0, binding = 4) uniform samplerBuffer corner_colors;
-layout(set = 0, binding = 5) uniform samplerBuffer corner_texcoords;
-layout(set = 0, binding = 6) uniform usamplerBuffer materials;
-layout(set = 0, binding = 7) uniform usamplerBuffer material_textures;
-layout(set = 0, binding = 8) uniform usamplerBuffer texture_table;
-layout(set = 0, binding = 9) uniform samplerBuffer texels;
-layout(set = 0, binding = 10) buffer Vpls { vec4 vpls[]; };
+layout(set = 0, binding = 1) buffer Vpls { vec4 vpls[]; };
 
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
 
@@ -112,10 +100,10 @@ void main() {
         Vpl vpl = unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]);
         vec3 flux = vpl.strength * (PI * length(vpl.normal) * float(push.bounce.parent_count) / float(push.bounce.child_count));
         Triangle triangle = load_triangle(triangles, index);
-        vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - rays.shift;
+        vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - vpl_rays.shift;
         vec3 face = front_normal(triangle);
         vec3 normal = dot(face, vpl.position_rs - position_rs) < 0.0 ? -face : face;
-        float area = min(OVERLAP / max(density_of_paths(position_rs, normal), 1e-30), PI * rays.radius * rays.radius);
+        float area = min(OVERLAP / max(density_of_paths(position_rs, normal), 1e-30), PI * vpl_rays.radius * vpl_rays.radius);
         position = pack_vpl_position(position_rs, area);
         strength = pack_vpl_strength(flux * albedo_at(triangle, vec3(1.0 - hit.y - hit.z, hit.yz)), normal);
     }

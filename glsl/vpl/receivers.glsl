@@ -1,11 +1,10 @@
 // The receiver of a region: the point of its plane behind its centre, with the middle of its normals. The region of one pixel has the
 // pixel's own. Rays start on the surface at the pixel beside the centre: the plane, carried there from one corner, may lie behind it.
 
-layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
-layout(set = 0, binding = 1) uniform sampler2D depth;
-layout(set = 0, binding = 2) uniform usampler2D surface;
-layout(set = 0, binding = 3) uniform sampler2D planes;
-layout(set = 0, binding = 4) uniform usampler2D normals;
+#include "groups/surface.glsl"
+
+layout(set = 0, binding = 0) uniform sampler2D planes;
+layout(set = 0, binding = 1) uniform usampler2D normals;
 
 Receiver receiver_of_region(Region region, ivec2 size) {
     // Of the region's centre.

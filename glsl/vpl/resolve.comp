@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "vpl/regions.glsl"
@@ -9,18 +10,13 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D surface;
-layout(set = 0, binding = 2) uniform sampler2D specular;
-layout(set = 0, binding = 3) uniform sampler2D region_planes;
-layout(set = 0, binding = 4) uniform sampler2D irradiance;
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D diffuse;
-layout(set = 0, binding = 6) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 0) uniform sampler2D region_planes;
+layout(set = 0, binding = 1) uniform sampler2D irradiance;
+layout(set = 0, binding = 2, rgba32f) writeonly uniform image2D diffuse;
 
 layout(push_constant, scalar) uniform Push {
     float depth_threshold;
     float normal_threshold;
-    uint has_specular;  // 0: no material has a specular lobe, `specular` is not read
 } push;
 
 vec4 irradiance_at(ivec2 texel) {
@@ -39,7 +35,7 @@ vec3 gathered_at(ivec2 pixel, ivec2 size) {
 
 void store(ivec2 pixel, ivec2 size, vec3 received) {
     if (is_inside(pixel, size)) {
-        vec4 lobe = push.has_specular != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
+        vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(vec3(0.0), texelFetch(surface, pixel, 0), lobe);
         imageStore(diffuse, pixel, vec4(received * (indirect_diffuse_albedo(point) * INVERSE_PI), 1.0));
     }

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/light_views.glsl"
 #include "lib/color.glsl"
 #include "lib/lights.glsl"
 #include "lib/vpl.glsl"
@@ -17,13 +18,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer views;
-layout(set = 0, binding = 1) uniform sampler2D light_depth;
-layout(set = 0, binding = 2) uniform usampler2D light_normal;
-layout(set = 0, binding = 3) uniform sampler2D light_flux;
-layout(set = 0, binding = 4) uniform sampler2D sums;
-layout(set = 0, binding = 5) readonly buffer Shares { ViewShare shares[]; };
-layout(set = 0, binding = 6) writeonly buffer Vpls { vec4 vpls[]; };
+layout(set = 0, binding = 0) uniform sampler2D sums;
+layout(set = 0, binding = 1) readonly buffer Shares { ViewShare shares[]; };
+layout(set = 0, binding = 2) writeonly buffer Vpls { vec4 vpls[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint view_count;

@@ -6,7 +6,7 @@
 //!
 //! found by running into the light (surface) and by choosing a point of it (light, connect), weighted by the balance heuristic.
 
-use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS, Walk};
+use super::paths::{FLOATS, Paths, WORD, Walk};
 use super::view::View;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -73,13 +73,9 @@ impl Sums {
 pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: &Wave) {
     paths.clear_queues(graph, Walk::FromCamera);
     let generate = shaders::Generate {
+        scene_rays: paths.rays.clone(),
+        new_paths: paths.started(),
         camera: paths.camera.clone(),
-        sobol: paths.sobol.clone(),
-        path_rays: paths.rays.write(),
-        path_states: paths.states.write(),
-        path_flags: paths.flags.write(),
-        path_seeds: paths.seeds.write(),
-        active_paths: paths.active(0).read_write(),
         push: shaders::GeneratePush {
             wave: types::WavePixels { size: view.size, first_block: wave.first_block, block_count: wave.block_count },
             sample_count: wave.sample_count,
@@ -94,7 +90,7 @@ pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: 
 
 /// Takes the paths to their vertex number `depth`, counted from 0, and on from there.
 pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
-    paths.intersect(graph, scene, Walk::FromCamera, depth);
+    paths.intersect(graph, Walk::FromCamera, depth);
     paths.surface(graph, scene, view, Walk::FromCamera, depth);
     if view.bounces.is_none_or(|bounces| depth <= bounces) {
         if scene.emitter_count > 0 {
@@ -107,33 +103,15 @@ pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene,
 
 /// Next-event estimation.
 pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
-    let variants = paths.variants;
     let light = shaders::Light {
-        alive_paths: paths.alive.texels(WORD),
-        path_rays: paths.rays.texels(FLOATS),
-        path_states: paths.states.texels(FLOATS),
-        path_flags: paths.flags.texels(WORD),
-        path_seeds: paths.seeds.texels(PAIR),
-        vertices: paths.vertices.texels(WORDS),
-        sobol: paths.sobol.clone(),
-        emitters: paths.scene.emitters.clone(),
-        lights: paths.scene.lights.clone(),
-        triangles: paths.scene.triangles.clone(),
-        materials: paths.scene.materials.clone(),
-        corner_texcoords: paths.scene.corner_texcoords.clone(),
-        material_textures: paths.scene.material_textures.clone(),
-        texture_table: paths.scene.texture_table.clone(),
-        texels: paths.scene.texels.clone(),
+        scene_rays: paths.rays.clone(),
+        scene_lights: paths.lights.clone(),
+        paths: paths.group(Walk::FromCamera, depth),
         connection_rays: paths.connection_rays.write(),
         connection_light: paths.connection_light.write(),
         connections: paths.connections.read_write(),
-        bvh_nodes: paths.scene.bvh_nodes.clone(),
-        specular_lobes: variants.specular,
-        transmissive: variants.transmissive,
-        light_paths: variants.light_paths,
-        emissive_textures: u32::from(scene.emissive_textures),
-        photons: variants.photons,
-        specular_caustics: variants.specular_caustics,
+        specular_lobes: paths.variants.specular,
+        transmissive: paths.variants.transmissive,
         push: shaders::LightPush {
             emitter_count: scene.emitter_count,
             depth,
@@ -143,22 +121,12 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
     };
     graph.pass("path/light", light).threads_indirect(paths.alive, 0);
     let connect = shaders::Connect {
+        scene_rays: paths.rays.clone(),
         connections: paths.connections.texels(WORD),
         connection_rays: paths.connection_rays.texels(FLOATS),
         connection_light: paths.connection_light.texels(FLOATS),
-        bvh_nodes: paths.scene.bvh_nodes.clone(),
-        bvh_triangles: paths.scene.bvh_triangles.clone(),
         path_radiance: paths.radiance.read_write(),
-        triangles: paths.scene.triangles.clone(),
-        corner_colors: paths.scene.corner_colors.clone(),
-        corner_texcoords: paths.scene.corner_texcoords.clone(),
-        materials: paths.scene.materials.clone(),
-        material_textures: paths.scene.material_textures.clone(),
-        texture_table: paths.scene.texture_table.clone(),
-        texels: paths.scene.texels.clone(),
-        alpha_masks: u32::from(scene.cutouts),
-        vertex_colors: u32::from(scene.facts.vertex_colors),
-        specular_lobes: variants.specular,
+        specular_lobes: paths.variants.specular,
         push: shaders::ConnectPush { path_count: paths.capacity, reserved: 0 },
     };
     graph.pass("path/connect", connect).count("rays", paths.connections, 3).threads_indirect(paths.connections, 0);

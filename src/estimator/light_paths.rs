@@ -4,7 +4,7 @@
 //! vertex from the second on is connected to the camera through its diffuse lobe, which is the slot `caustics` or `diffuse`; the
 //! balance heuristic shares every such path with the camera's (glsl/path/mis.glsl). Scenes without glossy surfaces do without.
 
-use super::paths::{FLOATS, Paths, WORD, WORDS, Walk, camera_rays};
+use super::paths::{FLOATS, Paths, WORD, Walk, camera_rays};
 use super::sums::SlotSums;
 use super::view::View;
 use crate::frame::rays::TracedScene;
@@ -99,22 +99,9 @@ pub(super) fn scale_of(scene: &TracedScene) -> f32 {
 pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, swarm: &Swarm) {
     paths.clear_queues(graph, Walk::FromLight);
     let emit = shaders::Emit {
-        sobol: paths.sobol.clone(),
-        emitters: paths.scene.emitters.clone(),
-        lights: paths.scene.lights.clone(),
-        triangles: paths.scene.triangles.clone(),
-        materials: paths.scene.materials.clone(),
-        corner_texcoords: paths.scene.corner_texcoords.clone(),
-        material_textures: paths.scene.material_textures.clone(),
-        texture_table: paths.scene.texture_table.clone(),
-        texels: paths.scene.texels.clone(),
-        path_rays: paths.rays.write(),
-        path_states: paths.states.write(),
-        path_flags: paths.flags.write(),
-        path_seeds: paths.seeds.write(),
-        active_paths: paths.active(0).read_write(),
-        bvh_nodes: paths.scene.bvh_nodes.clone(),
-        emissive_textures: u32::from(scene.emissive_textures),
+        scene_rays: paths.rays.clone(),
+        scene_lights: paths.lights.clone(),
+        new_paths: paths.started(),
         push: shaders::EmitPush {
             emitter_count: scene.emitter_count,
             first_path: swarm.first_path,
@@ -136,10 +123,10 @@ pub(super) fn advance(
     view: &View,
     depth: u32,
 ) {
-    paths.intersect(graph, scene, Walk::FromLight, depth);
+    paths.intersect(graph, Walk::FromLight, depth);
     paths.surface(graph, scene, view, Walk::FromLight, depth);
     if depth > 0 {
-        connect_to_camera(graph, paths, splats, scene, view);
+        connect_to_camera(graph, paths, splats, view, depth);
     }
     if view.bounces.is_none_or(|bounces| depth < bounces) {
         paths.scatter(graph, Walk::FromLight, depth);
@@ -147,22 +134,16 @@ pub(super) fn advance(
     paths.tally(graph, Walk::FromLight, depth);
 }
 
-fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, scene: &TracedScene, view: &View) {
-    let variants = paths.variants;
+fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view: &View, depth: u32) {
     let camera = shaders::Camera {
-        alive_paths: paths.alive.texels(WORD),
-        path_rays: paths.rays.texels(FLOATS),
-        path_states: paths.states.texels(FLOATS),
-        path_flags: paths.flags.texels(WORD),
-        vertices: paths.vertices.texels(WORDS),
-        bvh_nodes: paths.scene.bvh_nodes.clone(),
+        scene_rays: paths.rays.clone(),
+        paths: paths.group(Walk::FromLight, depth),
         camera: paths.camera.clone(),
         connection_rays: paths.connection_rays.write(),
         connection_light: paths.connection_light.write(),
         connections: paths.connections.read_write(),
-        specular_lobes: variants.specular,
-        transmissive: variants.transmissive,
-        specular_caustics: variants.specular_caustics,
+        specular_lobes: paths.variants.specular,
+        transmissive: paths.variants.transmissive,
         push: shaders::CameraPush {
             rays: camera_rays(view),
             size: view.size,
@@ -172,21 +153,11 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, scen
     };
     graph.pass("particle/camera", camera).threads_indirect(paths.alive, 0);
     let splat = shaders::Splat {
+        scene_rays: paths.rays.clone(),
         connections: paths.connections.texels(WORD),
         connection_rays: paths.connection_rays.texels(FLOATS),
         connection_light: paths.connection_light.texels(FLOATS),
-        bvh_nodes: paths.scene.bvh_nodes.clone(),
-        bvh_triangles: paths.scene.bvh_triangles.clone(),
         splats: splats.buffer.read_write(),
-        triangles: paths.scene.triangles.clone(),
-        corner_colors: paths.scene.corner_colors.clone(),
-        corner_texcoords: paths.scene.corner_texcoords.clone(),
-        materials: paths.scene.materials.clone(),
-        material_textures: paths.scene.material_textures.clone(),
-        texture_table: paths.scene.texture_table.clone(),
-        texels: paths.scene.texels.clone(),
-        alpha_masks: u32::from(scene.cutouts),
-        vertex_colors: u32::from(scene.facts.vertex_colors),
         push: shaders::SplatPush { scale: splats.scale, reserved: 0 },
     };
     graph.pass("particle/splat", splat).count("rays", paths.connections, 3).threads_indirect(paths.connections, 0);

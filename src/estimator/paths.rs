@@ -6,9 +6,10 @@
 use ash::vk;
 
 use super::view::View;
-use crate::frame::rays::{TracedBindings, TracedScene};
-use crate::graph::bindings::{BufferRef, TexelBuffer, Uniform};
+use crate::frame::rays::TracedScene;
+use crate::graph::bindings::{BufferRef, Uniform};
 use crate::graph::{Dependence, Graph, ReadBack};
+use crate::shaders::groups::{self, NewPaths, SceneLights, SceneRays};
 use crate::shaders::{path as shaders, types};
 use crate::slot::{CausticPaths, PixelFilter, Slot};
 
@@ -64,16 +65,16 @@ impl Variants {
 
 /// The buffers of a wave.
 pub(super) struct Paths {
-    pub(super) scene: TracedBindings,
+    pub(super) rays: SceneRays,
+    pub(super) lights: SceneLights,
     pub(super) variants: Variants,
     pub(super) camera: Uniform<types::Camera>,
-    pub(super) sobol: TexelBuffer,
-    pub(super) rays: BufferRef<[f32; 4]>,
-    pub(super) states: BufferRef<[f32; 4]>,
-    pub(super) flags: BufferRef<u32>,
-    pub(super) seeds: BufferRef<[u32; 2]>,
+    ways: BufferRef<[f32; 4]>,
+    states: BufferRef<[f32; 4]>,
+    flags: BufferRef<u32>,
+    seeds: BufferRef<[u32; 2]>,
     hits: BufferRef<[f32; 4]>,
-    pub(super) vertices: BufferRef<[u32; 4]>,
+    vertices: BufferRef<[u32; 4]>,
     pub(super) connection_rays: BufferRef<[f32; 4]>,
     pub(super) connection_light: BufferRef<[f32; 4]>,
     active: [BufferRef<u32>; 2],
@@ -87,7 +88,7 @@ pub(super) struct Paths {
 impl Paths {
     /// Buffers for `capacity` paths.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, view: &View, capacity: u32) -> Paths {
-        let (variants, bindings) = (Variants::of(scene, view), scene.import(graph));
+        let variants = Variants::of(scene, view);
         let paths = capacity as usize;
         let lobes = 1 + variants.specular as usize;
         let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
@@ -95,11 +96,11 @@ impl Paths {
         let totals = graph.buffer("path.totals", 4);
         graph.fill_buffer("path/clear-totals", totals, 0);
         Paths {
-            sobol: bindings.sobol.clone(),
-            scene: bindings,
+            rays: scene.rays(graph),
+            lights: scene.lights(graph),
             variants,
             camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
-            rays: graph.buffer("path.rays", 2 * paths),
+            ways: graph.buffer("path.rays", 2 * paths),
             states: graph.buffer("path.states", paths),
             flags: graph.buffer("path.flags", paths),
             seeds: graph.buffer("path.seeds", paths),
@@ -119,6 +120,34 @@ impl Paths {
     /// The queue of the paths that are on their way to vertex number `depth`, counted from 0.
     pub(super) fn active(&self, depth: u32) -> BufferRef<u32> {
         self.active[depth as usize % 2]
+    }
+
+    /// The paths on their way to vertex number `depth` and at it, as kernels read them.
+    pub(super) fn group(&self, walk: Walk, depth: u32) -> groups::Paths {
+        groups::Paths {
+            path_rays: self.ways.texels(FLOATS),
+            path_states: self.states.texels(FLOATS),
+            path_flags: self.flags.texels(WORD),
+            path_seeds: self.seeds.texels(PAIR),
+            path_vertices: self.vertices.texels(WORDS),
+            active_paths: self.active(depth).texels(WORD),
+            alive_paths: self.alive.texels(WORD),
+            from_light: walk.flag(),
+            light_paths: self.variants.light_paths,
+            photons: self.variants.photons,
+            specular_caustics: self.variants.specular_caustics,
+        }
+    }
+
+    /// Paths that start: nothing of what was there matters.
+    pub(super) fn started(&self) -> NewPaths {
+        NewPaths {
+            new_rays: self.ways.write_then_read(),
+            new_states: self.states.write_then_read(),
+            new_flags: self.flags.write_then_read(),
+            new_seeds: self.seeds.write_then_read(),
+            new_paths: self.active(0).read_write(),
+        }
     }
 
     /// Empties all queues, for a wave that starts.
@@ -145,23 +174,12 @@ impl Paths {
     }
 
     /// What the paths of vertex number `depth` meet.
-    pub(super) fn intersect(&self, graph: &mut Graph<'_>, scene: &TracedScene, walk: Walk, depth: u32) {
+    pub(super) fn intersect(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
         let active = self.active(depth);
         let intersect = shaders::Intersect {
-            active_paths: active.texels(WORD),
-            path_rays: self.rays.texels(FLOATS),
-            bvh_nodes: self.scene.bvh_nodes.clone(),
-            bvh_triangles: self.scene.bvh_triangles.clone(),
+            scene_rays: self.rays.clone(),
+            paths: self.group(walk, depth),
             path_hits: self.hits.write(),
-            triangles: self.scene.triangles.clone(),
-            corner_colors: self.scene.corner_colors.clone(),
-            corner_texcoords: self.scene.corner_texcoords.clone(),
-            materials: self.scene.materials.clone(),
-            material_textures: self.scene.material_textures.clone(),
-            texture_table: self.scene.texture_table.clone(),
-            texels: self.scene.texels.clone(),
-            alpha_masks: u32::from(scene.cutouts),
-            vertex_colors: u32::from(scene.facts.vertex_colors),
         };
         graph.pass(&walk.pass("intersect"), intersect).count("rays", active, 3).threads_indirect(active, 0);
     }
@@ -172,33 +190,16 @@ impl Paths {
         let ends = view.bounces.is_some_and(|bounces| depth > bounces);
         let pixels = view.size.map(|side| side as f32);
         let surface = shaders::Surface {
-            active_paths: active.texels(WORD),
-            path_rays: self.rays.texels(FLOATS),
-            path_states: self.states.texels(FLOATS),
-            path_flags: self.flags.texels(WORD),
+            scene_rays: self.rays.clone(),
+            paths: self.group(walk, depth),
             path_hits: self.hits.texels(FLOATS),
-            triangles: self.scene.triangles.clone(),
-            corner_colors: self.scene.corner_colors.clone(),
-            corner_texcoords: self.scene.corner_texcoords.clone(),
-            corner_tangents: self.scene.corner_tangents.clone(),
-            materials: self.scene.materials.clone(),
-            media: self.scene.media.clone(),
-            material_textures: self.scene.material_textures.clone(),
-            texture_table: self.scene.texture_table.clone(),
-            texels: self.scene.texels.clone(),
             camera: self.camera.clone(),
             vertices: self.vertices.write(),
             path_radiance: self.radiance.read_write(),
-            alive_paths: self.alive.read_write(),
+            alive_queue: self.alive.read_write(),
             specular_lobes: variants.specular,
             transmissive: variants.transmissive,
-            from_light: walk.flag(),
-            textures: scene.texture_kinds,
             pixel_footprint: u32::from(view.filter == PixelFilter::Center && scene.facts.textured),
-            light_paths: variants.light_paths,
-            vertex_colors: u32::from(scene.facts.vertex_colors),
-            normal_maps: u32::from(scene.facts.normal_mapped),
-            photons: variants.photons,
             push: shaders::SurfacePush {
                 sky: scene.sky,
                 depth,
@@ -214,22 +215,18 @@ impl Paths {
 
     /// Sends the paths on from vertex number `depth`.
     pub(super) fn scatter(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
-        let (next, variants) = (self.active(depth + 1), self.variants);
         let scatter = shaders::Scatter {
-            alive_paths: self.alive.texels(WORD),
-            path_seeds: self.seeds.texels(PAIR),
-            vertices: self.vertices.texels(WORDS),
-            sobol: self.sobol.clone(),
-            path_rays: self.rays.read_write(),
-            path_states: self.states.read_write(),
-            path_flags: self.flags.read_write(),
-            active_paths: next.read_write(),
-            bvh_nodes: self.scene.bvh_nodes.clone(),
-            specular_lobes: variants.specular,
-            transmissive: variants.transmissive,
-            from_light: walk.flag(),
-            light_paths: variants.light_paths,
-            specular_caustics: variants.specular_caustics,
+            scene_rays: self.rays.clone(),
+            paths: self.group(walk, depth),
+            new_paths: NewPaths {
+                new_rays: self.ways.read_write(),
+                new_states: self.states.read_write(),
+                new_flags: self.flags.read_write(),
+                new_seeds: self.seeds.read_write(),
+                new_paths: self.active(depth + 1).read_write(),
+            },
+            specular_lobes: self.variants.specular,
+            transmissive: self.variants.transmissive,
             push: shaders::ScatterPush { depth, reserved: 0 },
         };
         graph.pass(&walk.pass("scatter"), scatter).threads_indirect(self.alive, 0);
@@ -237,7 +234,7 @@ impl Paths {
 
     /// Asks for all that the next submission goes on from, and for the totals of this one: rays, and paths that go on.
     pub(super) fn want(&self, graph: &mut Graph<'_>) -> ReadBack {
-        graph.want_buffer(self.rays);
+        graph.want_buffer(self.ways);
         graph.want_buffer(self.states);
         graph.want_buffer(self.flags);
         graph.want_buffer(self.seeds);

@@ -3,9 +3,8 @@
 //! Photons are sorted into buckets of a grid by counting; within a bucket their order is any, and sums in fixed point make that
 //! no matter.
 
-use super::paths::{FLOATS, PAIR, Paths, WORD, WORDS};
+use super::paths::{Paths, WORD, WORDS, Walk};
 use super::view::View;
-use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
 use crate::shaders::sppm as shaders;
@@ -80,13 +79,8 @@ impl PhotonMap {
     /// Leaves the measurement points among the camera's vertices number `depth`.
     pub(super) fn measure(&self, graph: &mut Graph<'_>, paths: &Paths, depth: u32) {
         let measure = shaders::Measure {
-            alive_paths: paths.alive.texels(WORD),
-            path_rays: paths.rays.texels(FLOATS),
-            path_states: paths.states.texels(FLOATS),
-            path_flags: paths.flags.texels(WORD),
-            path_seeds: paths.seeds.texels(PAIR),
-            vertices: paths.vertices.texels(WORDS),
-            sobol: paths.sobol.clone(),
+            scene_rays: paths.rays.clone(),
+            paths: paths.group(Walk::FromCamera, depth),
             points: self.points.read_write(),
             point_queue: self.point_queue.read_write(),
             specular_lobes: paths.variants.specular,
@@ -97,23 +91,12 @@ impl PhotonMap {
     }
 
     /// Finds how much of each measurement point's disc is surface.
-    pub(super) fn probe(&self, graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, disc: Disc) {
+    pub(super) fn probe(&self, graph: &mut Graph<'_>, paths: &Paths, disc: Disc) {
         let probe = shaders::Probe {
+            scene_rays: paths.rays.clone(),
+            paths: paths.group(Walk::FromCamera, 0),
             point_queue: self.point_queue.texels(WORD),
-            path_seeds: paths.seeds.texels(PAIR),
-            sobol: paths.sobol.clone(),
-            bvh_nodes: paths.scene.bvh_nodes.clone(),
-            bvh_triangles: paths.scene.bvh_triangles.clone(),
             points: self.points.read_write(),
-            triangles: paths.scene.triangles.clone(),
-            corner_colors: paths.scene.corner_colors.clone(),
-            corner_texcoords: paths.scene.corner_texcoords.clone(),
-            materials: paths.scene.materials.clone(),
-            material_textures: paths.scene.material_textures.clone(),
-            texture_table: paths.scene.texture_table.clone(),
-            texels: paths.scene.texels.clone(),
-            alpha_masks: u32::from(scene.cutouts),
-            vertex_colors: u32::from(scene.facts.vertex_colors),
             push: shaders::ProbePush { radius: disc.radius, reserved: 0 },
         };
         graph.pass("sppm/probe", probe).threads_indirect(self.point_queue, 0);
@@ -122,16 +105,11 @@ impl PhotonMap {
     /// Leaves photons at the vertices number `depth` of light paths.
     pub(super) fn store(&self, graph: &mut Graph<'_>, paths: &Paths, disc: Disc, depth: u32) {
         let store = shaders::Store {
-            alive_paths: paths.alive.texels(WORD),
-            path_rays: paths.rays.texels(FLOATS),
-            path_states: paths.states.texels(FLOATS),
-            path_flags: paths.flags.texels(WORD),
-            vertices: paths.vertices.texels(WORDS),
+            paths: paths.group(Walk::FromLight, depth),
             photons: self.photons.read_write(),
             photon_queue: self.photon_queue.read_write(),
             bucket_counts: self.bucket_counts.read_write(),
             specular_lobes: paths.variants.specular,
-            transmissive: paths.variants.transmissive,
             push: shaders::StorePush { depth, bits: self.bits, inverse_cell: disc.inverse_cell(), reserved: 0 },
         };
         graph.pass("sppm/store", store).threads_indirect(paths.alive, 0);
@@ -162,7 +140,6 @@ impl PhotonMap {
             photon_order: self.photon_order.texels(WORD),
             path_radiance: paths.radiance.read_write(),
             specular_lobes: paths.variants.specular,
-            transmissive: paths.variants.transmissive,
             push: shaders::GatherPush {
                 radius: disc.radius,
                 inverse_cell: disc.inverse_cell(),

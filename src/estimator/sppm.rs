@@ -220,8 +220,8 @@ impl Mapping<'_> {
     /// Finds how much surface there is around each measurement point.
     fn probe(&mut self, pass: &Pass) -> Result<(), VulkanError> {
         let timing = self.timing;
-        let (mut graph, scene, _, paths, map, _) = self.declare(&pass.wave);
-        map.probe(&mut graph, &paths, scene, pass.disc);
+        let (mut graph, _, _, paths, map, _) = self.declare(&pass.wave);
+        map.probe(&mut graph, &paths, pass.disc);
         map.want(&mut graph);
         paths.want(&mut graph);
         graph.run(timing).map(|executed| self.cost.add(executed))
@@ -298,7 +298,7 @@ impl Estimating for PhotonMapper {
         for depth in 0..2 {
             advance_from_camera(&mut graph, &paths, &map, scene, view, depth);
         }
-        map.probe(&mut graph, &paths, scene, disc);
+        map.probe(&mut graph, &paths, disc);
         light_paths::emit(&mut graph, &paths, scene, view, &swarm);
         for depth in 0..2 {
             advance_from_light(&mut graph, &paths, &map, scene, view, disc, depth);
@@ -345,7 +345,7 @@ fn advance_from_camera(
     view: &View,
     depth: u32,
 ) {
-    paths.intersect(graph, scene, Walk::FromCamera, depth);
+    paths.intersect(graph, Walk::FromCamera, depth);
     paths.surface(graph, scene, view, Walk::FromCamera, depth);
     if view.bounces.is_none_or(|bounces| depth <= bounces) {
         if scene.emitter_count > 0 {
@@ -370,7 +370,7 @@ fn advance_from_light(
     disc: Disc,
     depth: u32,
 ) {
-    paths.intersect(graph, scene, Walk::FromLight, depth);
+    paths.intersect(graph, Walk::FromLight, depth);
     paths.surface(graph, scene, view, Walk::FromLight, depth);
     if depth > 0 {
         map.store(graph, paths, disc, depth);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::gbuffer::GBuffer;
-use crate::graph::bindings::ImageRef;
+use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{Dependence, Graph};
 use crate::shaders::compose::{Estimate, Image, ImagePush};
 use crate::slot::Slot;
@@ -18,12 +18,12 @@ pub(crate) fn compose(
     slot: impl Fn(Slot) -> Option<ImageRef>,
 ) -> ImageRef {
     let image = graph.image("image", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
-    // What stands for an absent slot is bound but not read; nor is the depth where the slot `emission` shows the sky.
-    let depth = slot(Slot::Emission).unwrap_or(buffer.depth);
-    let bound = |name: Slot| slot(name).unwrap_or(depth).sampled();
+    // Where the slot `emission` shows the sky the depth is not read.
+    let depth = slot(Slot::Emission).is_none().then_some(buffer.depth);
+    let bound = |name: Slot| SampledImage::of(slot(name));
     let present = (0..).zip(Slot::ALL).filter(|(_, name)| slot(*name).is_some()).map(|(bit, _)| 1_u32 << bit).sum();
     let pass = Image {
-        depth: depth.sampled(),
+        depth: SampledImage::of(depth),
         emission: bound(Slot::Emission),
         direct: bound(Slot::Direct),
         diffuse: bound(Slot::Diffuse),

@@ -4,16 +4,18 @@ use ash::vk;
 
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::scene_data::SceneData;
-use crate::graph::bindings::{ImageRef, Uniform};
+use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::scene::Facts;
+use crate::shaders::groups::Surface;
 use crate::shaders::{gbuffer, types};
 
 /// What later passes read of the first visible surface. Texels as in glsl/lib/surface_packing.glsl.
 #[derive(Clone)]
 pub(crate) struct GBuffer {
     pub(crate) size: [u32; 2],
-    pub(crate) camera: Uniform<types::Camera>,
+    /// All of it but what is emitted, as passes bind it.
+    pub(crate) group: Surface,
     /// Reverse-Z, 0 where there is no surface.
     pub(crate) depth: ImageRef,
     pub(crate) surface: ImageRef,
@@ -21,13 +23,6 @@ pub(crate) struct GBuffer {
     specular: Option<ImageRef>,
     /// Radiance; the sky where there is no surface. Absent where nothing emits or nobody asks.
     pub(crate) emission: Option<ImageRef>,
-}
-
-impl GBuffer {
-    /// The image of specular lobes, or one that stands for it where no lobe is, and whether it is real.
-    pub(crate) fn specular(&self) -> (ImageRef, u32) {
-        self.specular.map_or((self.depth, 0), |image| (image, 1))
-    }
 }
 
 /// Declares the passes. `emission`: whether the emitted radiance is wanted.
@@ -40,12 +35,21 @@ pub(crate) fn gbuffer(
 ) -> GBuffer {
     let size = view.size;
     let camera = graph.upload("camera", &[view.camera], Dependence::CAMERA).uniform();
+    let depth = graph.image("gbuffer.depth", vk::Format::D32_SFLOAT, size);
+    let surface = graph.image("gbuffer.surface", vk::Format::R32G32B32A32_UINT, size);
+    let specular = facts.specular.then(|| graph.image("gbuffer.specular", vk::Format::R16G16B16A16_SFLOAT, size));
     let buffer = GBuffer {
         size,
-        camera,
-        depth: graph.image("gbuffer.depth", vk::Format::D32_SFLOAT, size),
-        surface: graph.image("gbuffer.surface", vk::Format::R32G32B32A32_UINT, size),
-        specular: facts.specular.then(|| graph.image("gbuffer.specular", vk::Format::R16G16B16A16_SFLOAT, size)),
+        group: Surface {
+            camera: camera.clone(),
+            depth: depth.sampled(),
+            surface: surface.sampled(),
+            specular: SampledImage::of(specular),
+            has_specular: u32::from(specular.is_some()),
+        },
+        depth,
+        surface,
+        specular,
         emission: view.emission.then(|| graph.image("gbuffer.emission", vk::Format::R32G32B32A32_SFLOAT, size)),
     };
     let [red, green, blue] = view.sky;
@@ -56,13 +60,7 @@ pub(crate) fn gbuffer(
     };
     let draw_view = [DrawView::new(&view.camera.view_projection, None, None)];
 
-    let plain = gbuffer::Plain {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        camera: buffer.camera.clone(),
-    };
+    let plain = gbuffer::Plain { geometry: geometry.clone(), camera: camera.clone() };
     let list = draw_list(data, Attributes::Plain, &draw_view, |drawn| !drawn.textured);
     let pass = graph.raster("gbuffer/plain", plain, Attributes::Plain.raster_state(data));
     pass.depth(buffer.depth, Some(0.0))
@@ -83,12 +81,8 @@ pub(crate) fn gbuffer(
             continue;
         }
         let textured = gbuffer::Textured {
-            instances: geometry.instances.clone(),
-            materials: geometry.materials.clone(),
-            indices: geometry.indices.clone(),
-            positions: geometry.positions.clone(),
-            material_textures: geometry.material_textures.clone(),
-            camera: buffer.camera.clone(),
+            geometry: geometry.clone(),
+            camera: camera.clone(),
             textures: data.texture_kinds(takes),
             alpha_mask: u32::from(masked),
         };

@@ -5,23 +5,14 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::scene_data::{DrawnInstance, SceneData, Stream};
-use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, DrawCall, DrawGroup, DrawList, Graph, hash_of};
 use crate::shaders::types;
+
+pub(crate) use crate::shaders::groups::Geometry;
 use crate::vulkan::{DepthState, RasterState, VertexAttribute, VertexLayout};
 
 /// The format of lists of structs that are read as texels (glsl/lib/scene.glsl).
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
-
-/// The scene's buffers as passes that draw it bind them.
-#[derive(Clone)]
-pub(crate) struct Geometry {
-    pub(crate) instances: TexelBuffer,
-    pub(crate) materials: TexelBuffer,
-    pub(crate) indices: TexelBuffer,
-    pub(crate) positions: TexelBuffer,
-    pub(crate) material_textures: TexelBuffer,
-}
 
 impl Geometry {
     pub(crate) fn import(graph: &mut Graph<'_>, data: &SceneData) -> Geometry {
@@ -46,10 +37,10 @@ impl Geometry {
         );
         Geometry {
             instances: instances.texels(RECORDS),
-            materials: materials.texels(RECORDS),
+            drawn_materials: materials.texels(RECORDS),
             indices: indices.texels(vk::Format::R32_UINT),
             positions: positions.texels(vk::Format::R32_SFLOAT),
-            material_textures: uses.texels(RECORDS),
+            drawn_textures: uses.texels(RECORDS),
         }
     }
 }

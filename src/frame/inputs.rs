@@ -3,7 +3,7 @@
 use super::gbuffer::GBuffer;
 use super::geometry::Geometry;
 use super::light_set::LightSet;
-use super::light_views::{LightViews, ReflectiveViews};
+use super::light_views::LightViews;
 use super::rays::TracedScene;
 use super::scene_data::SceneData;
 use crate::scene::Facts;
@@ -19,6 +19,5 @@ pub(crate) struct FrameInputs<'f> {
     pub(crate) set: &'f LightSet,
     /// Present where some method takes them and something shines.
     pub(crate) lights: Option<LightViews>,
-    pub(crate) reflective: Option<ReflectiveViews>,
     pub(crate) traced: Option<&'f TracedScene>,
 }

@@ -7,18 +7,20 @@ use ash::vk;
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::light_set::LightSet;
 use super::scene_data::{DrawnInstance, SceneData};
-use crate::graph::bindings::{ImageRef, TexelBuffer};
+use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{ClearColor, Dependence, Graph};
-use crate::shaders::{light_views, types};
+use crate::shaders::{groups, light_views, types};
 
 /// The lights and their views on the device.
 #[derive(Clone)]
 pub(crate) struct LightViews {
     pub(crate) light_count: u32,
-    pub(crate) lights: TexelBuffer,
-    pub(crate) views: TexelBuffer,
+    /// As passes bind them; normals and flux are absent unless they are asked for.
+    pub(crate) group: groups::LightViews,
     /// Reverse-Z depth of each view in its rectangle.
     pub(crate) depth: ImageRef,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) reflective: Option<ReflectiveViews>,
 }
 
 /// What the lights' texels reflect.
@@ -38,27 +40,30 @@ pub(crate) fn light_views(
     geometry: &Geometry,
     set: &LightSet,
     reflective: bool,
-) -> (LightViews, Option<ReflectiveViews>) {
+) -> LightViews {
     let size = set.atlas.size.map(|side| side.max(1));
     let records: Vec<types::LightView> = set.atlas.views.iter().map(|view| view.record).collect();
     let lights = graph.upload("light_views.lights", &set.lights, Dependence::LIGHTS);
     let views = graph.upload("light_views.views", &records, Dependence::LIGHTS);
-    let made = LightViews {
-        light_count: lights.count() as u32,
-        lights: lights.texels(vk::Format::R32G32B32A32_UINT),
-        views: views.texels(vk::Format::R32G32B32A32_UINT),
-        depth: graph.image("light_views.depth", vk::Format::D32_SFLOAT, size),
-    };
+    let depth = graph.image("light_views.depth", vk::Format::D32_SFLOAT, size);
     let reflective = reflective.then(|| ReflectiveViews {
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
         flux: graph.image("light_views.flux", vk::Format::R32G32B32A32_SFLOAT, size),
     });
+    let group = groups::LightViews {
+        lights: lights.texels(vk::Format::R32G32B32A32_UINT),
+        views: views.texels(vk::Format::R32G32B32A32_UINT),
+        light_depth: depth.sampled(),
+        light_normal: SampledImage::of(reflective.map(|views| views.normal)),
+        light_flux: SampledImage::of(reflective.map(|views| views.flux)),
+    };
+    let made = LightViews { light_count: lights.count() as u32, group, depth, reflective };
     let draw_views = draw_views(set);
     match reflective {
         Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
         None => draw_depth(graph, data, geometry, &made, &draw_views),
     }
-    (made, reflective)
+    made
 }
 
 /// All views as draws see them.
@@ -80,8 +85,8 @@ fn draw_view(index: u32, view: &super::view_layout::LaidOutView) -> DrawView {
 fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, views: &[DrawView]) {
     let solid = |drawn: &DrawnInstance| !(drawn.masked && drawn.textured);
     let depth = light_views::Depth {
-        instances: geometry.instances.clone(),
-        views: made.views.clone(),
+        geometry: geometry.clone(),
+        light_views: made.group.clone(),
         push: light_views::DepthPush { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Depth, views, solid);
@@ -92,10 +97,8 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
         return;
     }
     let masked = light_views::DepthMasked {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        material_textures: geometry.material_textures.clone(),
-        views: made.views.clone(),
+        geometry: geometry.clone(),
+        light_views: made.group.clone(),
         textures: data.texture_kinds(|drawn| !solid(drawn)),
         push: light_views::DepthMaskedPush { view_index: 0 },
     };
@@ -113,12 +116,8 @@ fn draw_reflective(
     views: &[DrawView],
 ) {
     let plain = light_views::Reflective {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        views: made.views.clone(),
-        lights: made.lights.clone(),
+        geometry: geometry.clone(),
+        light_views: made.group.clone(),
         push: light_views::ReflectivePush { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Plain, views, |drawn| !drawn.textured);
@@ -139,13 +138,8 @@ fn draw_reflective(
             continue;
         }
         let textured = light_views::ReflectiveTextured {
-            instances: geometry.instances.clone(),
-            materials: geometry.materials.clone(),
-            indices: geometry.indices.clone(),
-            positions: geometry.positions.clone(),
-            material_textures: geometry.material_textures.clone(),
-            views: made.views.clone(),
-            lights: made.lights.clone(),
+            geometry: geometry.clone(),
+            light_views: made.group.clone(),
             textures: data.texture_kinds(takes),
             alpha_mask: u32::from(masked),
             push: light_views::ReflectiveTexturedPush { view_index: 0 },

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::rays::{FLOATS, NO_TRIANGLE, NODES, Random, Ray, Traced, ray, trace};
+use super::rays::{FLOATS, NO_TRIANGLE, Random, Ray, Traced, ray, scene_rays, trace};
 use super::session::Session;
 use crate::graph::{Dependence, Graph};
 use crate::renderer::Timing;
@@ -166,8 +166,7 @@ fn a_flagged_triangle_is_met_only_where_the_shader_accepts_it() {
     let mut graph = Graph::new(&mut store);
     let hits = graph.buffer::<types::MaskedHit>("hits", rays.len());
     let pass = MaskedHit {
-        bvh_nodes: graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE).texels(NODES),
-        bvh_triangles: graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE).texels(FLOATS),
+        scene_rays: scene_rays(&mut graph, &bvh),
         rays: graph.upload("rays", &rays, Dependence::NONE).texels(FLOATS),
         hits: hits.write(),
     };

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::rays::{FLOATS, NO_TRIANGLE, NODES, Random, Ray, Traced, ray, trace};
+use super::rays::{FLOATS, NO_TRIANGLE, Random, Ray, Traced, ray, scene_rays, trace};
 use super::session::Session;
 use crate::graph::{Dependence, Graph};
 use crate::renderer::Timing;
@@ -82,8 +82,7 @@ fn rays_leave_a_surface_without_meeting_it_again() {
             let mut graph = Graph::new(&mut store);
             let leavings = graph.buffer::<types::Leaving>("leavings", rays.len());
             let pass = LeaveSurface {
-                bvh_nodes: graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE).texels(NODES),
-                bvh_triangles: graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE).texels(FLOATS),
+                scene_rays: scene_rays(&mut graph, &bvh),
                 rays: graph.upload("rays", &rays, Dependence::NONE).texels(FLOATS),
                 corners: graph.upload("corners", &corners, Dependence::NONE).texels(FLOATS),
                 leavings: leavings.write(),

@@ -12,6 +12,7 @@ mod direct;
 mod flux;
 mod gather;
 mod graph;
+mod groups;
 mod hybrid;
 mod invariance;
 mod layouts;

@@ -125,7 +125,7 @@ impl OnDevice<'_> {
         let camera = crate::frame::camera::camera(&view(DVec3::ONE, DVec3::ZERO), [8, 8], data.origin);
         let view = View { camera, size: [8, 8], sky: [0.0; 3], emission: false };
         let buffer = gbuffer(&mut graph, data, &geometry, &facts, &view);
-        let (lights, _) = light_views(&mut graph, data, &geometry, set, false);
+        let lights = light_views(&mut graph, data, &geometry, set, false);
         let inputs = PhotonInputs {
             buffer: &buffer,
             data,

@@ -65,7 +65,7 @@ pub(super) fn probe(
     let frame = shared.inputs(&mut graph, &data, &set, traced.as_ref(), inputs);
     let mut declared = Declared {
         gbuffer: shared.surface.clone(),
-        reflective: frame.reflective,
+        reflective: frame.lights.as_ref().and_then(|lights| lights.reflective),
         rsm: None,
         vpl: None,
         slots: Vec::new(),

@@ -9,10 +9,11 @@ use super::session::Session;
 use crate::graph::{Dependence, Graph, Store};
 use crate::renderer::Timing;
 use crate::scene::bvh::Bvh;
+use crate::shaders::groups::SceneRays;
 use crate::shaders::trace::{Closest, Occluded};
 use crate::shaders::types;
 
-pub(super) const NODES: vk::Format = vk::Format::R32G32B32A32_UINT;
+const NODES: vk::Format = vk::Format::R32G32B32A32_UINT;
 pub(super) const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
@@ -53,6 +54,15 @@ pub(super) struct Traced {
     pub(super) ms: [f64; 2],
 }
 
+/// A hierarchy and nothing else of a scene.
+pub(super) fn scene_rays(graph: &mut Graph<'_>, bvh: &Bvh) -> SceneRays {
+    SceneRays {
+        bvh_nodes: graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE).texels(NODES),
+        bvh_triangles: graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE).texels(FLOATS),
+        ..SceneRays::absent()
+    }
+}
+
 pub(super) fn trace(session: &Session, bvh: &Bvh, rays: &[Ray]) -> Traced {
     trace_in(&mut session.store(), bvh, rays)
 }
@@ -60,25 +70,14 @@ pub(super) fn trace(session: &Session, bvh: &Bvh, rays: &[Ray]) -> Traced {
 pub(super) fn trace_in(store: &mut Store, bvh: &Bvh, rays: &[Ray]) -> Traced {
     store.invalidate();
     let mut graph = Graph::new(store);
-    let nodes = graph.upload("bvh.nodes", &bvh.nodes, Dependence::NONE);
-    let triangles = graph.upload("bvh.triangles", &bvh.triangles, Dependence::NONE);
+    let scene_rays = scene_rays(&mut graph, bvh);
     let list = graph.upload("rays", rays, Dependence::NONE);
     let hits = graph.buffer::<types::Hit>("hits", rays.len());
     let blocked = graph.buffer::<u32>("blocked", rays.len());
     let threads = [rays.len() as u32, 1, 1];
-    let closest = Closest {
-        bvh_nodes: nodes.texels(NODES),
-        bvh_triangles: triangles.texels(FLOATS),
-        rays: list.texels(FLOATS),
-        hits: hits.write(),
-    };
+    let closest = Closest { scene_rays: scene_rays.clone(), rays: list.texels(FLOATS), hits: hits.write() };
     graph.pass("test/closest", closest).threads(threads);
-    let occluded = Occluded {
-        bvh_nodes: nodes.texels(NODES),
-        bvh_triangles: triangles.texels(FLOATS),
-        rays: list.texels(FLOATS),
-        blocked: blocked.write(),
-    };
+    let occluded = Occluded { scene_rays, rays: list.texels(FLOATS), blocked: blocked.write() };
     graph.pass("test/occluded", occluded).threads(threads);
     let reads = (graph.read_back_buffer(hits), graph.read_back_buffer(blocked));
     let mut executed = graph.run(Timing::Passes).expect("a frame");

@@ -40,12 +40,8 @@ impl Graph<'_> {
         recorder.bind_pipeline(pipeline);
         let mut descriptors = Vec::new();
         for (number, access) in &pass.bindings {
-            let binding = program
-                .bindings
-                .iter()
-                .find(|binding| (binding.set, binding.binding) == (0, *number))
-                .expect("generated from the same SPIR-V");
-            descriptors.push((*number, binding.kind, self.descriptor(access, binding.kind)?));
+            let kind = program.binding(*number).kind;
+            descriptors.push((*number, kind, self.descriptor(access, kind)?));
         }
         if !descriptors.is_empty() {
             let set = recorder.descriptor_set(pipelines.set_layout(program, 0)?, &descriptors)?;

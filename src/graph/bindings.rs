@@ -13,7 +13,8 @@ use crate::vulkan::{ImageInfo, SamplerKind};
 pub(crate) trait BindingSet {
     const PROGRAM: &'static Program;
     const SET: u32;
-    fn visit(&self, visitor: &mut dyn FnMut(u32, Access));
+    /// Every binding that the program uses, with what is bound to it; `None`: nothing, since the program is specialised not to read it.
+    fn visit(&self, visitor: &mut dyn FnMut(u32, Option<Access>));
     fn push_bytes(&self) -> &[u8];
     fn constants(&self) -> Vec<u32>;
 }
@@ -42,30 +43,30 @@ impl ImageRef {
     }
 
     pub(crate) fn sampled_with(self, sampler: SamplerKind) -> SampledImage {
-        SampledImage(self.access(ImageUse::Sampled(sampler)))
+        SampledImage(Some(self.access(ImageUse::Sampled(sampler))))
     }
 
     pub(crate) fn read(self) -> ReadImage {
-        ReadImage(self.access(ImageUse::StorageRead))
+        ReadImage(Some(self.access(ImageUse::StorageRead)))
     }
 
     /// Every texel is written; what was there before does not matter.
     pub(crate) fn write(self) -> WriteImage {
-        WriteImage(self.access(ImageUse::StorageWrite))
+        WriteImage(Some(self.access(ImageUse::StorageWrite)))
     }
 
     /// Some texels are written; the others keep what they held.
     pub(crate) fn modify(self) -> WriteImage {
-        WriteImage(self.access(ImageUse::StorageModify))
+        WriteImage(Some(self.access(ImageUse::StorageModify)))
     }
 
     pub(crate) fn read_write(self) -> ReadWriteImage {
-        ReadWriteImage(self.access(ImageUse::StorageModify))
+        ReadWriteImage(Some(self.access(ImageUse::StorageModify)))
     }
 
     /// Every texel is written before it is read; what was there before does not matter.
     pub(crate) fn write_then_read(self) -> ReadWriteImage {
-        ReadWriteImage(self.access(ImageUse::StorageWrite))
+        ReadWriteImage(Some(self.access(ImageUse::StorageWrite)))
     }
 
     pub(super) fn access(self, usage: ImageUse) -> Access {
@@ -96,35 +97,35 @@ impl<T> BufferRef<T> {
     }
 
     pub(crate) fn uniform(self) -> Uniform<T> {
-        Uniform(self.access(BufferUse::Uniform), PhantomData)
+        Uniform(Some(self.access(BufferUse::Uniform)), PhantomData)
     }
 
     pub(crate) fn read(self) -> ReadBuffer<T> {
-        ReadBuffer(self.access(BufferUse::Read), PhantomData)
+        ReadBuffer(Some(self.access(BufferUse::Read)), PhantomData)
     }
 
     /// Every element is written; what was there before does not matter.
     pub(crate) fn write(self) -> WriteBuffer<T> {
-        WriteBuffer(self.access(BufferUse::Write), PhantomData)
+        WriteBuffer(Some(self.access(BufferUse::Write)), PhantomData)
     }
 
     /// Some elements are written; the others keep what they held.
     pub(crate) fn modify(self) -> WriteBuffer<T> {
-        WriteBuffer(self.access(BufferUse::Modify), PhantomData)
+        WriteBuffer(Some(self.access(BufferUse::Modify)), PhantomData)
     }
 
     pub(crate) fn read_write(self) -> ReadWriteBuffer<T> {
-        ReadWriteBuffer(self.access(BufferUse::Modify), PhantomData)
+        ReadWriteBuffer(Some(self.access(BufferUse::Modify)), PhantomData)
     }
 
     /// Every element is written before it is read; what was there before does not matter.
     pub(crate) fn write_then_read(self) -> ReadWriteBuffer<T> {
-        ReadWriteBuffer(self.access(BufferUse::Write), PhantomData)
+        ReadWriteBuffer(Some(self.access(BufferUse::Write)), PhantomData)
     }
 
     /// As texels of `format`, the fastest way to read a list in an inner loop on the software driver.
     pub(crate) fn texels(self, format: vk::Format) -> TexelBuffer {
-        TexelBuffer(self.access(BufferUse::Texels(format)))
+        TexelBuffer(Some(self.access(BufferUse::Texels(format))))
     }
 
     pub(super) fn access(self, usage: BufferUse) -> Access {
@@ -178,11 +179,11 @@ macro_rules! image_binding {
     ($($(#[$doc:meta])* $name:ident),*) => { $(
         $(#[$doc])*
         #[derive(Clone, Debug)]
-        pub(crate) struct $name(pub(super) Access);
+        pub(crate) struct $name(pub(super) Option<Access>);
 
-        impl From<&$name> for Access {
-            fn from(binding: &$name) -> Access {
-                binding.0.clone()
+        impl $name {
+            pub(crate) fn access(&self) -> Option<Access> {
+                self.0.clone()
             }
         }
     )* };
@@ -205,7 +206,7 @@ macro_rules! buffer_binding {
     ($($(#[$doc:meta])* $name:ident),*) => { $(
         $(#[$doc])*
         #[derive(Debug)]
-        pub(crate) struct $name<T>(pub(super) Access, pub(super) PhantomData<fn() -> T>);
+        pub(crate) struct $name<T>(pub(super) Option<Access>, pub(super) PhantomData<fn() -> T>);
 
         impl<T> Clone for $name<T> {
             fn clone(&self) -> Self {
@@ -213,9 +214,9 @@ macro_rules! buffer_binding {
             }
         }
 
-        impl<T> From<&$name<T>> for Access {
-            fn from(binding: &$name<T>) -> Access {
-                binding.0.clone()
+        impl<T> $name<T> {
+            pub(crate) fn access(&self) -> Option<Access> {
+                self.0.clone()
             }
         }
     )* };
@@ -230,4 +231,30 @@ buffer_binding! {
     WriteBuffer,
     /// A buffer that is read and written.
     ReadWriteBuffer
+}
+
+// What programs read may be left out where a specialisation constant keeps them from reading it: the graph then binds something that nobody
+// writes.
+
+impl SampledImage {
+    pub(crate) fn absent() -> SampledImage {
+        SampledImage(None)
+    }
+
+    /// `image` if there is one.
+    pub(crate) fn of(image: Option<ImageRef>) -> SampledImage {
+        image.map_or(SampledImage::absent(), ImageRef::sampled)
+    }
+}
+
+impl TexelBuffer {
+    pub(crate) fn absent() -> TexelBuffer {
+        TexelBuffer(None)
+    }
+}
+
+impl<T> ReadWriteBuffer<T> {
+    pub(crate) fn absent() -> ReadWriteBuffer<T> {
+        ReadWriteBuffer(None, PhantomData)
+    }
 }

@@ -38,7 +38,10 @@ impl<'g, 's> PassBuilder<'g, 's> {
         pass.program = Some(B::PROGRAM);
         pass.constants = bindings.constants();
         pass.push = bindings.push_bytes().to_vec();
-        bindings.visit(&mut |binding, access| pass.bindings.push((binding, access)));
+        bindings.visit(&mut |binding, access| {
+            let access = access.unwrap_or_else(|| graph.nothing(B::PROGRAM.binding(binding)));
+            pass.bindings.push((binding, access));
+        });
         pass.raster = raster.map(|state| (state, Targets::default()));
         PassBuilder { graph, pass }
     }

@@ -24,6 +24,7 @@ mod describe;
 mod execute;
 mod key;
 mod needs;
+mod nothing;
 mod pass;
 mod read_back;
 mod record;

@@ -1,7 +1,7 @@
 //! What a method declares its passes with: the graph, and what all methods share of a frame.
 
 use crate::frame::inputs::FrameInputs;
-use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::frame::light_views::LightViews;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 
@@ -59,13 +59,8 @@ impl<'f, 's> FrameCx<'f, 's> {
         self.frame.traced.filter(|_| self.inputs.rays != Rays::None)
     }
 
-    /// The views from the lights, for a method that takes them.
+    /// The views from the lights, and what their texels reflect, for a method that takes them.
     pub(crate) fn lights(&self) -> &'f LightViews {
         self.frame.lights.as_ref().expect("made for every method that takes them, where something shines")
-    }
-
-    /// What their texels reflect, for a method that takes it.
-    pub(crate) fn reflective(&self) -> ReflectiveViews {
-        self.frame.reflective.expect("made for every method that takes them, where something shines")
     }
 }

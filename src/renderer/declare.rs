@@ -110,8 +110,7 @@ impl Shared {
         traced: Option<&'a TracedScene>,
         inputs: Inputs,
     ) -> FrameInputs<'a> {
-        let views = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, inputs.light_flux));
-        let (lights, reflective) = views.map_or((None, None), |(lights, reflective)| (Some(lights), reflective));
+        let lights = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, inputs.light_flux));
         FrameInputs {
             data,
             facts: &self.facts,
@@ -120,7 +119,6 @@ impl Shared {
             surface: &self.surface,
             set,
             lights,
-            reflective,
             traced,
         }
     }

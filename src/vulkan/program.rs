@@ -23,6 +23,12 @@ impl Program {
         self.stages.iter().any(|stage| stage.kind == StageKind::Compute)
     }
 
+    /// What is declared with this number in set 0.
+    pub(crate) fn binding(&self, number: u32) -> &Binding {
+        let found = self.bindings.iter().find(|binding| (binding.set, binding.binding) == (0, number));
+        found.expect("generated from the same SPIR-V")
+    }
+
     pub(crate) fn has_set(&self, set: u32) -> bool {
         self.bindings.iter().any(|binding| binding.set == set)
     }
@@ -89,6 +95,8 @@ pub(crate) struct Binding {
     pub(crate) set: u32,
     pub(crate) binding: u32,
     pub(crate) kind: BindingKind,
+    /// Of sampled images and texel buffers: whether shaders read integers.
+    pub(crate) integers: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,11 @@
 use ash::vk;
 
 use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
-use crate::frame::rays::{TracedBindings, TracedScene};
+use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
+use crate::shaders::groups::SceneRays;
 use crate::shaders::photons::{Trace, TracePush};
 
 /// From render space to that of the traced scene.
@@ -19,25 +20,15 @@ pub(crate) fn trace(
     graph: &mut Graph<'_>,
     data: &SceneData,
     traced: &TracedScene,
-    scene: &TracedBindings,
+    scene: &SceneRays,
     rays: &PhotonRays,
     counts: BufferRef<u32>,
 ) {
     let pass = Trace {
+        scene_rays: scene.clone(),
         rays: rays.rays.texels(vk::Format::R32G32B32A32_UINT),
         counts: counts.texels(vk::Format::R32_UINT),
-        bvh_nodes: scene.bvh_nodes.clone(),
-        bvh_triangles: scene.bvh_triangles.clone(),
         hits: rays.hits.write(),
-        triangles: scene.triangles.clone(),
-        corner_colors: scene.corner_colors.clone(),
-        corner_texcoords: scene.corner_texcoords.clone(),
-        materials: scene.materials.clone(),
-        material_textures: scene.material_textures.clone(),
-        texture_table: scene.texture_table.clone(),
-        texels: scene.texels.clone(),
-        alpha_masks: u32::from(traced.facts.alpha_masked),
-        vertex_colors: u32::from(traced.facts.vertex_colors),
         push: TracePush { shift: shift(data, traced), stage: rays.stage as u32 },
     };
     let name = format!("caustics/photons/trace.{}", rays.stage);

@@ -11,20 +11,16 @@ use crate::vulkan::RasterState;
 
 /// Declares the passes that fill `splat.result`.
 pub(super) fn discs(graph: &mut Graph<'_>, splat: &Splat<'_>) {
-    let (buffer, landed) = (splat.buffer, &splat.landed);
+    let landed = &splat.landed;
     let list = TileList::Ordinary;
     for range in splat.ranges(graph) {
         splat.clear_sums(graph, list, range);
         let pass = Discs {
-            camera: buffer.camera.clone(),
+            splat: splat.group(list),
+            surface: splat.buffer.group.clone(),
             discs: splat.discs.texels(RECORDS),
             places: splat.places.texels(vk::Format::R32G32_UINT),
-            depth: buffer.depth.sampled(),
-            surface: buffer.surface.sampled(),
-            tile_peaks: splat.tile_peak_texels(),
             sums: range.sums.read_write(),
-            gaussian: splat.gaussian,
-            elliptic: splat.elliptic,
             push: DiscsPush {
                 image_size: splat.image_size,
                 downscale: splat.downscale,

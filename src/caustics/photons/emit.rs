@@ -57,18 +57,16 @@ pub(crate) fn emit(
     let (tiles, tiles_per_row) = views_of_tiles(inputs.set);
     let tile_views = graph.upload("photons.tile_views", &tiles, Dependence::LIGHTS);
     let pass = Emit {
+        geometry: inputs.geometry.clone(),
+        light_views: inputs.lights.group.clone(),
         mask: views.mask.sampled(),
         levels: choice.levels.clone(),
         pyramid: choice.pyramid.texels(WORDS),
         choice: choice.choice.texels(WORDS),
         blocks: choice.blocks.texels(WORDS),
-        views: inputs.lights.views.clone(),
-        lights: inputs.lights.lights.clone(),
         tile_views: tile_views.texels(WORDS),
-        light_depth: inputs.lights.depth.sampled(),
         specular_surface: views.surface.sampled(),
         specular_layer: views.layer.sampled(),
-        materials: inputs.geometry.materials.clone(),
         arrivals: made.arrivals.write(),
         surfaces: made.surfaces.write(),
         arrival_beams: made.beams.write(),

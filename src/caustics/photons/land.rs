@@ -8,8 +8,9 @@ use super::emit::Arrivals;
 use super::inputs::PhotonInputs;
 use super::options::PhotonFootprint;
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
-use crate::frame::rays::{TracedBindings, TracedScene};
+use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
+use crate::shaders::groups::SceneRays;
 use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -20,7 +21,7 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub(crate) fn land(
     graph: &mut Graph<'_>,
     inputs: &PhotonInputs<'_>,
-    scene: Option<(&TracedScene, &TracedBindings)>,
+    scene: Option<(&TracedScene, &SceneRays)>,
     choice: &Choice,
     rays: &PhotonRays,
     lists: (&LandedPhotons, Arrivals),
@@ -49,10 +50,10 @@ pub(crate) fn land(
         None => graph.pass(
             &name,
             Land {
+                geometry: inputs.geometry.clone(),
                 rays: rays.rays.texels(RECORDS),
                 hits: rays.hits.texels(RECORDS),
                 choice: choice.choice.texels(WORDS),
-                materials: inputs.geometry.materials.clone(),
                 photons,
                 arrivals: next.arrivals.write(),
                 surfaces: next.surfaces.write(),
@@ -64,13 +65,14 @@ pub(crate) fn land(
                 push,
             },
         ),
-        Some((traced, bindings)) => graph.pass(
+        Some((_, scene_rays)) => graph.pass(
             &name,
             LandTraced {
+                scene_rays: scene_rays.clone(),
+                geometry: inputs.geometry.clone(),
                 rays: rays.rays.texels(RECORDS),
                 hits: rays.hits.texels(RECORDS),
                 choice: choice.choice.texels(WORDS),
-                materials: inputs.geometry.materials.clone(),
                 photons,
                 arrivals: next.arrivals.write(),
                 surfaces: next.surfaces.write(),
@@ -79,16 +81,6 @@ pub(crate) fn land(
                 ellipses,
                 counts: choice.counts.read_write(),
                 arrival_counts: choice.arrival_counts.read_write(),
-                triangles: bindings.triangles.clone(),
-                corner_colors: bindings.corner_colors.clone(),
-                corner_texcoords: bindings.corner_texcoords.clone(),
-                corner_tangents: bindings.corner_tangents.clone(),
-                material_textures: bindings.material_textures.clone(),
-                texture_table: bindings.texture_table.clone(),
-                texels: bindings.texels.clone(),
-                textures: traced.texture_kinds,
-                vertex_colors: u32::from(traced.facts.vertex_colors),
-                normal_maps: u32::from(traced.facts.normal_mapped),
                 push: LandTracedPush {
                     shift: push.shift,
                     stage: push.stage,

@@ -64,10 +64,8 @@ impl Peeling<'_> {
         let SceneLists { resolution, view_count, .. } = *self.lists;
         let capacity = self.lists.nodes.count() as u32;
         let solid = Peel {
-            instances: geometry.instances.clone(),
-            indices: geometry.indices.clone(),
-            positions: geometry.positions.clone(),
-            views: self.lists.view_texels(),
+            geometry: geometry.clone(),
+            photon_lists: self.lists.group(),
             previous: previous.sampled(),
             push: PeelPush { view_index: 0, view_count, resolution, capacity },
         };
@@ -84,12 +82,8 @@ impl Peeling<'_> {
             return;
         }
         let masked = PeelMasked {
-            instances: geometry.instances.clone(),
-            materials: geometry.materials.clone(),
-            indices: geometry.indices.clone(),
-            positions: geometry.positions.clone(),
-            material_textures: geometry.material_textures.clone(),
-            views: self.lists.view_texels(),
+            geometry: geometry.clone(),
+            photon_lists: self.lists.group(),
             previous: previous.sampled(),
             textures: data.texture_kinds(cut),
             push: PeelMaskedPush { view_index: 0, view_count, resolution, capacity },

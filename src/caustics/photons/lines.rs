@@ -26,9 +26,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     for view_index in 0..lists.view_count {
         let pass = Lines {
             rays: rays.rays.texels(words),
-            views: lists.view_texels(),
-            pixels: lists.pixel_texels(),
-            nodes: lists.node_texels(),
+            photon_lists: lists.group(),
             hits: rays.hits.read_write(),
             push: LinesPush { view_index, resolution: lists.resolution },
         };
@@ -40,9 +38,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     }
     let resolve = LinesResolve {
         rays: rays.rays.texels(words),
-        views: lists.view_texels(),
-        pixels: lists.pixel_texels(),
-        nodes: lists.node_texels(),
+        photon_lists: lists.group(),
         hits: rays.hits.read_write(),
         counts: counts.read(),
         push: LinesResolvePush {

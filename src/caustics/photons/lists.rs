@@ -98,10 +98,8 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
     let area = [resolution, resolution * view_count];
     let state = |attributes: Attributes| RasterState { depth: None, ..attributes.raster_state(data) };
     let solid = Append {
-        instances: geometry.instances.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        views: lists.view_texels(),
+        geometry: geometry.clone(),
+        photon_lists: lists.group(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.write(),
@@ -120,12 +118,8 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
     }
     let cut = |drawn: &DrawnInstance| !is_solid(drawn);
     let masked = AppendMasked {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        material_textures: geometry.material_textures.clone(),
-        views: lists.view_texels(),
+        geometry: geometry.clone(),
+        photon_lists: lists.group(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.read_write(),
@@ -145,9 +139,7 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
         [view_count * side * side, 1, 1]
     };
     let finest = Occupancy {
-        views: lists.view_texels(),
-        pixels: lists.pixel_texels(),
-        nodes: lists.node_texels(),
+        photon_lists: lists.group(),
         blocks: blocks.slices.write(),
         push: OccupancyPush { resolution, view_count },
     };

@@ -16,9 +16,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     graph.fill_buffer(&format!("caustics/photons/march-clear.{}", rays.stage), work, 0);
     let pass = March {
         rays: rays.rays.texels(words),
-        views: lists.view_texels(),
-        pixels: lists.pixel_texels(),
-        nodes: lists.node_texels(),
+        photon_lists: lists.group(),
         blocks: lists.blocks.slices.texels(words),
         counts: counts.read(),
         hits: rays.hits.write(),

@@ -134,7 +134,7 @@ pub(crate) fn trace_all(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -> Tra
             },
         )
     });
-    let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.import(graph)));
+    let scene = inputs.traced.filter(|_| by_triangles).map(|traced| (traced, traced.rays(graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
     emit::emit(graph, inputs, &views, &choice, arrivals);
     let all_rays = PhotonRays::declare(graph, 0, capacity);

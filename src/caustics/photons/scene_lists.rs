@@ -6,7 +6,8 @@ use super::list_views::ListView;
 use super::options::PhotonOptions;
 use crate::frame::geometry::{DrawView, Geometry};
 use crate::frame::scene_data::{DrawnInstance, SceneData};
-use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::bindings::BufferRef;
+use crate::shaders::groups::PhotonLists;
 use crate::shaders::types;
 
 pub(super) const MOST_LEVELS: usize = 4;
@@ -44,16 +45,13 @@ pub(crate) struct Blocks {
 }
 
 impl SceneLists {
-    pub(super) fn view_texels(&self) -> TexelBuffer {
-        self.views.texels(vk::Format::R32G32B32A32_SFLOAT)
-    }
-
-    pub(super) fn pixel_texels(&self) -> TexelBuffer {
-        self.pixels.texels(vk::Format::R32G32B32A32_UINT)
-    }
-
-    pub(super) fn node_texels(&self) -> TexelBuffer {
-        self.nodes.texels(vk::Format::R32G32B32A32_UINT)
+    /// As passes read them.
+    pub(super) fn group(&self) -> PhotonLists {
+        PhotonLists {
+            list_views: self.views.texels(vk::Format::R32G32B32A32_SFLOAT),
+            list_pixels: self.pixels.texels(vk::Format::R32G32B32A32_UINT),
+            list_nodes: self.nodes.texels(vk::Format::R32G32B32A32_UINT),
+        }
     }
 }
 

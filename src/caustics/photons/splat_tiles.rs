@@ -6,7 +6,8 @@ use super::grid::Grid;
 use super::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
-use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
+use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::shaders::groups;
 use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
@@ -83,18 +84,16 @@ impl Splat<'_> {
         graph.pass("caustics/photons/splat-start", pass).groups([1, 1, 1]);
 
         let pass = Project {
-            camera: self.buffer.camera.clone(),
+            splat: self.group(TileList::Ordinary),
+            surface: self.buffer.group.clone(),
             photons: self.landed.photons.texels(RECORDS),
             ellipses: self.landed.ellipses.texels(vk::Format::R32G32B32A32_SFLOAT),
             counts: self.landed.counts.texels(WORDS),
-            levels: grid.levels.texels(RECORDS),
             discs: self.discs.write(),
             places: self.places.write(),
             cell_counts: self.cell_counts.read_write(),
             cell_peaks: self.cell_peaks.read_write(),
             state: self.state.read_write(),
-            gaussian: self.gaussian,
-            elliptic: self.elliptic,
             push: ProjectPush {
                 image_size: self.image_size,
                 stage,
@@ -110,7 +109,7 @@ impl Splat<'_> {
             .threads_indirect(self.landed.counts, first + DISPATCH_WORD);
 
         let pass = Touch {
-            levels: grid.levels.texels(RECORDS),
+            splat: self.group(TileList::Ordinary),
             cell_peaks: self.cell_peaks.texels(WORDS),
             cell_counts: self.cell_counts.texels(WORDS),
             tile_peaks: self.tile_peaks.write(),
@@ -130,23 +129,21 @@ impl Splat<'_> {
             .threads_indirect(self.state, BLOCKS_WORD);
     }
 
-    pub(super) fn state_texels(&self) -> TexelBuffer {
-        self.state.texels(WORDS)
+    /// What later passes read of the first ones, over the tiles of `list`.
+    pub(super) fn group(&self, list: TileList) -> groups::Splat {
+        let tiles = if list == TileList::Ordinary { self.tile_list } else { self.crowded };
+        groups::Splat {
+            splat_state: self.state.texels(WORDS),
+            splat_tiles: tiles.texels(WORDS),
+            splat_peaks: self.tile_peaks.texels(WORDS),
+            splat_levels: self.grid.levels.texels(RECORDS),
+            gaussian: self.gaussian,
+            elliptic: self.elliptic,
+        }
     }
 
     /// The lists of tiles that the chosen way makes.
     pub(super) fn lists(&self) -> &'static [TileList] {
         if self.may_crowd { &[TileList::Ordinary, TileList::Crowded] } else { &[TileList::Ordinary] }
-    }
-
-    pub(super) fn tile_texels(&self, list: TileList) -> TexelBuffer {
-        match list {
-            TileList::Ordinary => self.tile_list.texels(WORDS),
-            TileList::Crowded => self.crowded.texels(WORDS),
-        }
-    }
-
-    pub(super) fn tile_peak_texels(&self) -> TexelBuffer {
-        self.tile_peaks.texels(WORDS)
     }
 }

@@ -44,8 +44,7 @@ impl Splat<'_> {
     /// Clears the sums of those tiles of the range that are in `list`.
     pub(super) fn clear_sums(&self, graph: &mut Graph<'_>, list: TileList, range: TileRange) {
         let pass = Clear {
-            state: self.state_texels(),
-            tiles: self.tile_texels(list),
+            splat: self.group(list),
             sums: range.sums.write(),
             push: ClearPush { list: list.word() as u32, range: range.ends },
         };
@@ -54,19 +53,14 @@ impl Splat<'_> {
 
     /// Writes the results of those tiles of the range that are in `list` from their sums.
     pub(super) fn resolve(&self, graph: &mut Graph<'_>, list: TileList, range: TileRange) {
-        let (specular, has_specular) = self.buffer.specular();
         let pass = Resolve {
-            surface: self.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            state: self.state_texels(),
-            tiles: self.tile_texels(list),
-            tile_peaks: self.tile_peak_texels(),
+            splat: self.group(list),
+            surface: self.buffer.group.clone(),
             sums: range.sums.texels(RECORDS),
             result: self.result.modify(),
             push: ResolvePush {
                 image_size: self.image_size,
                 downscale: self.downscale,
-                has_specular,
                 list: list.word() as u32,
                 range: range.ends,
             },

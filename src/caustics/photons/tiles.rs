@@ -24,7 +24,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
 
     graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
     let pass = Scan {
-        levels: grid.levels.texels(RECORDS),
+        splat: splat.group(TileList::Ordinary),
         cell_counts: splat.cell_counts.texels(WORDS),
         cell_starts: cell_starts.write(),
         sorted_count: sorted_count.read_write(),
@@ -48,41 +48,28 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 
-    let gather = |sums: ReadWriteBuffer<u32>, list: TileList, range: [i32; 2]| {
-        let (specular, has_specular) = splat.buffer.specular();
-        Gather {
-            camera: splat.buffer.camera.clone(),
-            depth: splat.buffer.depth.sampled(),
-            surface: splat.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            state: splat.state_texels(),
-            tiles: splat.tile_texels(list),
-            tile_peaks: splat.tile_peak_texels(),
-            levels: grid.levels.texels(RECORDS),
-            cell_starts: cell_starts.texels(WORDS),
-            sorted_centers: centers.texels(FLOATS),
-            sorted_normals: normals.texels(FLOATS),
-            sorted_irradiances: irradiances.texels(FLOATS),
-            sorted_squeezes: squeezes.texels(FLOATS),
-            result: splat.result.modify(),
-            sums,
-            gaussian: splat.gaussian,
-            elliptic: splat.elliptic,
-            crowded: u32::from(list == TileList::Crowded),
-            push: GatherPush {
-                image_size: splat.image_size,
-                downscale: splat.downscale,
-                level_count: grid.level_count,
-                has_specular,
-                range,
-            },
-        }
+    let gather = |sums: ReadWriteBuffer<u32>, list: TileList, range: [i32; 2]| Gather {
+        splat: splat.group(list),
+        surface: splat.buffer.group.clone(),
+        cell_starts: cell_starts.texels(WORDS),
+        sorted_centers: centers.texels(FLOATS),
+        sorted_normals: normals.texels(FLOATS),
+        sorted_irradiances: irradiances.texels(FLOATS),
+        sorted_squeezes: squeezes.texels(FLOATS),
+        result: splat.result.modify(),
+        sums,
+        crowded: u32::from(list == TileList::Crowded),
+        push: GatherPush {
+            image_size: splat.image_size,
+            downscale: splat.downscale,
+            level_count: grid.level_count,
+            range,
+        },
     };
     let list = TileList::Ordinary;
     // The order in which rows of cells take their places in the sorted list differs from run to run: no pass may make `scan` run again after
     // `sort` has, as one that changed what `scan` leaves would.
-    let no_sums = graph.buffer::<u32>("photons.no_sums", 1).write_then_read();
-    let pass = gather(no_sums, list, [0, i32::MAX]);
+    let pass = gather(ReadWriteBuffer::absent(), list, [0, i32::MAX]);
     graph.pass(&list.pass_name("gather"), pass).threads_indirect(splat.state, list.word());
     if splat.may_crowd {
         let list = TileList::Crowded;

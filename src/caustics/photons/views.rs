@@ -36,12 +36,8 @@ pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -
 
     let plain = |drawn: &DrawnInstance| drawn.specular && !drawn.textured;
     let pass = Specular {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        views: lights.views.clone(),
-        lights: lights.lights.clone(),
+        geometry: geometry.clone(),
+        light_views: lights.group.clone(),
         push: SpecularPush { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Plain, &views, plain);
@@ -59,13 +55,8 @@ pub(crate) fn specular_views(graph: &mut Graph<'_>, inputs: &PhotonInputs<'_>) -
         return made;
     }
     let pass = SpecularTextured {
-        instances: geometry.instances.clone(),
-        materials: geometry.materials.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
-        material_textures: geometry.material_textures.clone(),
-        views: lights.views.clone(),
-        lights: lights.lights.clone(),
+        geometry: geometry.clone(),
+        light_views: lights.group.clone(),
         textures: data.texture_kinds(textured),
         push: SpecularTexturedPush { view_index: 0 },
     };

@@ -62,7 +62,7 @@ pub(crate) struct Made {
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn rsm(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Made {
-    let (buffer, set, lights, reflective) = (cx.frame.surface, cx.frame.set, cx.lights(), cx.reflective());
+    let (buffer, set, lights) = (cx.frame.surface, cx.frame.set, cx.lights());
     let graph = &mut *cx.graph;
     let tile_count = set.atlas.tiles.len() as u32;
     let vpl_count = options.vpls;
@@ -74,10 +74,7 @@ pub(crate) fn rsm(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Made {
 
     let pass = TileFlux {
         tiles: tiles.read(),
-        views: lights.views.clone(),
-        light_depth: lights.depth.sampled(),
-        light_normal: reflective.normal.sampled(),
-        light_flux: reflective.flux.sampled(),
+        light_views: lights.group.clone(),
         tile_fluxes: tile_fluxes.write(),
         push: TileFluxPush { tile_count },
     };
@@ -93,25 +90,18 @@ pub(crate) fn rsm(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Made {
 
     let pass = Vpls {
         tiles: tiles.read(),
-        views: lights.views.clone(),
-        light_depth: lights.depth.sampled(),
-        light_normal: reflective.normal.sampled(),
-        light_flux: reflective.flux.sampled(),
+        light_views: lights.group.clone(),
         flux_prefix: flux_prefix.read(),
         vpls: vpls.write(),
         push: VplsPush { tile_count, vpl_count },
     };
     graph.pass("diffuse/rsm/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
 
-    let (specular, has_specular) = buffer.specular();
     let pass = Gather {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        specular: specular.sampled(),
+        surface: buffer.group.clone(),
         vpls: vpls.texels(vk::Format::R32G32B32A32_SFLOAT),
         diffuse: diffuse.write(),
-        push: GatherPush { vpl_count, has_specular },
+        push: GatherPush { vpl_count },
     };
     let [width, height] = buffer.size;
     let terms = u64::from(width) * u64::from(height) * u64::from(vpl_count);

@@ -26,7 +26,7 @@ const TRACED_VPLS: u32 = 96;
 
 /// What each pass takes, and its name.
 fn ranges(name: &str, vpl_count: u32, visibility: &Visibility) -> Vec<(String, VplRange)> {
-    let most = if visibility.kind == TRACED { TRACED_VPLS } else { MOST_VPLS };
+    let most = if visibility.group.visibility == TRACED { TRACED_VPLS } else { MOST_VPLS };
     let pass = |part: u32| {
         let (first, end) = (part * most, ((part + 1) * most).min(vpl_count));
         let name = if part == 0 { name.to_owned() } else { format!("{name}-{}", part + 1) };
@@ -43,36 +43,18 @@ pub(super) fn gather_pixels(
     visibility: &Visibility,
     diffuse: ImageRef,
 ) {
-    let (buffer, rays) = (inputs.buffer, &visibility.rays);
-    let (specular, has_specular) = buffer.specular();
+    let buffer = inputs.buffer;
     let [width, height] = buffer.size;
     graph.clear_image("diffuse/vpl/clear", diffuse, BLACK);
     for (name, range) in ranges("diffuse/vpl/gather-pixels", vpl_count(vpls), visibility) {
         let terms = u64::from(width) * u64::from(height) * u64::from((range.end - range.first).cast_unsigned());
         let pass = GatherPixels {
-            camera: buffer.camera.clone(),
-            depth: buffer.depth.sampled(),
-            surface: buffer.surface.sampled(),
-            specular: specular.sampled(),
+            surface: buffer.group.clone(),
             vpls: vpls.texels(FLOATS),
             diffuse: diffuse.read_write(),
-            visibility: visibility.kind,
-            ism_resolution: visibility.ism_resolution,
-            ism_maps: visibility.ism_maps.clone(),
-            eye: buffer.camera.clone(),
-            bvh_nodes: rays.bvh_nodes.clone(),
-            bvh_triangles: rays.bvh_triangles.clone(),
-            rays: rays.rays.clone(),
-            triangles: rays.triangles.clone(),
-            corner_colors: rays.corner_colors.clone(),
-            corner_texcoords: rays.corner_texcoords.clone(),
-            materials: rays.materials.clone(),
-            material_textures: rays.material_textures.clone(),
-            texture_table: rays.texture_table.clone(),
-            texels: rays.texels.clone(),
-            alpha_masks: rays.alpha_masks,
-            vertex_colors: rays.vertex_colors,
-            push: GatherPixelsPush { range, has_specular },
+            scene_rays: visibility.scene.clone(),
+            vpl_visibility: visibility.group.clone(),
+            push: GatherPixelsPush { range },
         };
         graph.pass(&name, pass).note("VPL terms", terms).groups([width.div_ceil(16), height.div_ceil(8), 1]);
     }
@@ -90,35 +72,19 @@ pub(super) fn gather_list(
     pyramid: &Pyramid,
     list: BufferRef<u32>,
 ) -> ImageRef {
-    let (buffer, rays) = (inputs.buffer, &visibility.rays);
+    let buffer = inputs.buffer;
     let irradiance = flattened(graph, buffer.size);
     graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, BLACK);
     for (name, range) in ranges("diffuse/vpl/gather-regions", vpl_count(vpls), visibility) {
         let pass = GatherRegions {
-            camera: buffer.camera.clone(),
-            depth: buffer.depth.sampled(),
-            surface: buffer.surface.sampled(),
+            surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),
             normals: pyramid.normals.sampled(),
             vpls: vpls.texels(FLOATS),
             list: list.texels(vk::Format::R32_UINT),
             irradiance: irradiance.read_write(),
-            visibility: visibility.kind,
-            ism_resolution: visibility.ism_resolution,
-            ism_maps: visibility.ism_maps.clone(),
-            eye: buffer.camera.clone(),
-            bvh_nodes: rays.bvh_nodes.clone(),
-            bvh_triangles: rays.bvh_triangles.clone(),
-            rays: rays.rays.clone(),
-            triangles: rays.triangles.clone(),
-            corner_colors: rays.corner_colors.clone(),
-            corner_texcoords: rays.corner_texcoords.clone(),
-            materials: rays.materials.clone(),
-            material_textures: rays.material_textures.clone(),
-            texture_table: rays.texture_table.clone(),
-            texels: rays.texels.clone(),
-            alpha_masks: rays.alpha_masks,
-            vertex_colors: rays.vertex_colors,
+            scene_rays: visibility.scene.clone(),
+            vpl_visibility: visibility.group.clone(),
             push: GatherRegionsPush {
                 size: signed(buffer.size),
                 level_count: pyramid.level_count.cast_signed(),
@@ -139,35 +105,19 @@ pub(super) fn gather_stencil(
     pyramid: &Pyramid,
     stencil: ImageRef,
 ) -> (ImageRef, BufferRef<u32>) {
-    let (buffer, rays) = (inputs.buffer, &visibility.rays);
+    let buffer = inputs.buffer;
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
     graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);
     for (name, range) in ranges("diffuse/vpl/gather-stencil", vpl_count(vpls), visibility) {
         let pass = GatherStencil {
-            camera: buffer.camera.clone(),
-            depth: buffer.depth.sampled(),
-            surface: buffer.surface.sampled(),
+            surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),
             normals: pyramid.normals.sampled(),
             vpls: vpls.texels(FLOATS),
             invocations: invocations.read_write(),
-            visibility: visibility.kind,
-            ism_resolution: visibility.ism_resolution,
-            ism_maps: visibility.ism_maps.clone(),
-            eye: buffer.camera.clone(),
-            bvh_nodes: rays.bvh_nodes.clone(),
-            bvh_triangles: rays.bvh_triangles.clone(),
-            rays: rays.rays.clone(),
-            triangles: rays.triangles.clone(),
-            corner_colors: rays.corner_colors.clone(),
-            corner_texcoords: rays.corner_texcoords.clone(),
-            materials: rays.materials.clone(),
-            material_textures: rays.material_textures.clone(),
-            texture_table: rays.texture_table.clone(),
-            texels: rays.texels.clone(),
-            alpha_masks: rays.alpha_masks,
-            vertex_colors: rays.vertex_colors,
+            scene_rays: visibility.scene.clone(),
+            vpl_visibility: visibility.group.clone(),
             push: GatherStencilPush {
                 size: signed(buffer.size),
                 level_count: pyramid.level_count.cast_signed(),

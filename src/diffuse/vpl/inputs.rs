@@ -4,7 +4,7 @@ use super::options::VplOptions;
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::geometry::Geometry;
 use crate::frame::light_set::LightSet;
-use crate::frame::light_views::{LightViews, ReflectiveViews};
+use crate::frame::light_views::LightViews;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::BufferRef;
@@ -16,7 +16,6 @@ pub(crate) struct VplInputs<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) set: &'a LightSet,
     pub(crate) lights: &'a LightViews,
-    pub(crate) reflective: ReflectiveViews,
     /// Present where rays are traced for visibility or further bounces.
     pub(crate) traced: Option<&'a TracedScene>,
     pub(crate) options: &'a VplOptions,

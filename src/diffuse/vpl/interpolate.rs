@@ -24,22 +24,18 @@ pub(crate) fn interpolate(
             square_planes: planes_of_level(level),
             region_planes: planes_of_level(level + 1),
             irradiance: irradiance.read_write(),
-            camera: buffer.camera.clone(),
+            surface: buffer.group.clone(),
             push: InterpolatePush { size: signed(size), level: level.cast_signed(), depth_threshold, normal_threshold },
         };
         let regions = size.map(|side| side >> (level + 1));
         graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);
     }
-    let (specular, has_specular) = buffer.specular();
     let pass = Resolve {
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
-        specular: specular.sampled(),
+        surface: buffer.group.clone(),
         region_planes: planes_of_level(1),
         irradiance: irradiance.sampled(),
         diffuse: diffuse.write(),
-        camera: buffer.camera.clone(),
-        push: ResolvePush { depth_threshold, normal_threshold, has_specular },
+        push: ResolvePush { depth_threshold, normal_threshold },
     };
     graph.pass("diffuse/vpl/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
 }

@@ -152,9 +152,7 @@ fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, 
     let points = graph.buffer::<[f32; 4]>("ism.points", points_of_set as usize * set_count as usize);
 
     let pass = Areas {
-        instances: geometry.instances.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
+        geometry: geometry.clone(),
         first_triangles: first_triangles.texels(vk::Format::R32_UINT),
         area_sums: area_sums.write(),
         block_areas: block_areas.write(),
@@ -166,9 +164,7 @@ fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, 
         Scan { block_areas: block_areas.read(), area_before: area_before.write(), push: ScanPush { block_count } };
     graph.pass("diffuse/vpl/ism-scan", pass).groups([1, 1, 1]);
     let pass = Points {
-        instances: geometry.instances.clone(),
-        indices: geometry.indices.clone(),
-        positions: geometry.positions.clone(),
+        geometry: geometry.clone(),
         first_triangles: first_triangles.texels(vk::Format::R32_UINT),
         area_sums: area_sums.texels(FLOAT),
         area_before: area_before.texels(FLOAT),

@@ -15,9 +15,9 @@ use ash::vk;
 
 use self::inputs::VplInputs;
 use self::options::{VplOptions, VplShading, VplVisibility};
-use self::visibility::{Rays, Visibility};
+use self::visibility::Visibility;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::method::{Error, FrameCx, Inputs, Method, Rays as RaysTaken};
+use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::slot::{LightPaths, Slot};
 
@@ -35,7 +35,7 @@ impl Method for Vpl {
 
     fn inputs(options: &VplOptions) -> Inputs {
         let traces = options.visibility == VplVisibility::Traced || options.bounces > 1;
-        let rays = if traces { RaysTaken::ToSurfaces } else { RaysTaken::None };
+        let rays = if traces { Rays::ToSurfaces } else { Rays::None };
         Inputs { light_depth: true, light_flux: true, rays }
     }
 
@@ -74,16 +74,15 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
         geometry: cx.frame.geometry,
         set: cx.frame.set,
         lights: cx.lights(),
-        reflective: cx.reflective(),
         traced: cx.rays(),
         options,
     };
     let graph = &mut *cx.graph;
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, inputs.buffer.size);
     let first_bounce = sample::sample(graph, inputs);
-    let rays = Rays::new(graph, inputs, first_bounce);
-    let vpls = paths::with_bounces(graph, inputs, &rays, first_bounce);
-    let visibility = Visibility::new(graph, inputs, rays, vpls);
+    let unblocked = Visibility::new(graph, inputs);
+    let vpls = paths::with_bounces(graph, inputs, &unblocked, first_bounce);
+    let visibility = unblocked.of(graph, inputs, vpls);
     let mut made = Made { diffuse, vpls, invocations: None, list: None };
     let level_count = pyramid::level_count(inputs.buffer.size, inputs.options.levels);
     let shading = match inputs.options.shading {

@@ -7,7 +7,7 @@
 use ash::vk;
 
 use super::inputs::VplInputs;
-use super::visibility::Rays;
+use super::visibility::Visibility;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::types;
@@ -29,10 +29,12 @@ fn counts(first: u32, bounces: u32) -> Vec<u32> {
 pub(super) fn with_bounces(
     graph: &mut Graph<'_>,
     inputs: &VplInputs<'_>,
-    rays: &Rays,
+    visibility: &Visibility,
     first_bounce: BufferRef<[f32; 4]>,
 ) -> BufferRef<[f32; 4]> {
-    let Some(traced) = inputs.traced.filter(|_| inputs.options.bounces > 1) else { return first_bounce };
+    if inputs.traced.is_none() || inputs.options.bounces <= 1 {
+        return first_bounce;
+    }
     let counts = counts(inputs.options.count, inputs.options.bounces);
     let all: u32 = counts.iter().sum();
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
@@ -48,38 +50,18 @@ pub(super) fn with_bounces(
         let hits = graph.buffer::<[f32; 4]>(&format!("vpl.path_hits.{number}"), child_count as usize);
         let pass = PathHits {
             vpls: vpls.texels(FLOATS),
-            bvh_nodes: rays.bvh_nodes.clone(),
-            bvh_triangles: rays.bvh_triangles.clone(),
-            rays: rays.rays.clone(),
-            sobol: rays.sobol.clone(),
+            scene_rays: visibility.scene.clone(),
+            vpl_visibility: visibility.group.clone(),
             hits: hits.write(),
-            triangles: rays.triangles.clone(),
-            corner_colors: rays.corner_colors.clone(),
-            corner_texcoords: rays.corner_texcoords.clone(),
-            materials: rays.materials.clone(),
-            material_textures: rays.material_textures.clone(),
-            texture_table: rays.texture_table.clone(),
-            texels: rays.texels.clone(),
-            alpha_masks: rays.alpha_masks,
-            vertex_colors: rays.vertex_colors,
             push: PathHitsPush { bounce },
         };
         let name = format!("diffuse/vpl/path-hits-{number}");
         graph.pass(&name, pass).note("rays", u64::from(child_count)).threads([child_count, 1, 1]);
         let pass = PathVpls {
             hits: hits.texels(FLOATS),
-            rays: rays.rays.clone(),
-            sobol: rays.sobol.clone(),
-            triangles: rays.triangles.clone(),
-            corner_colors: rays.corner_colors.clone(),
-            corner_texcoords: rays.corner_texcoords.clone(),
-            materials: rays.materials.clone(),
-            material_textures: rays.material_textures.clone(),
-            texture_table: rays.texture_table.clone(),
-            texels: rays.texels.clone(),
+            scene_rays: visibility.scene.clone(),
+            vpl_visibility: visibility.group.clone(),
             vpls: vpls.read_write(),
-            textures: traced.texture_kinds,
-            vertex_colors: rays.vertex_colors,
             push: PathVplsPush { bounce },
         };
         let name = format!("diffuse/vpl/path-vpls-{number}");

@@ -58,9 +58,7 @@ pub(crate) fn pyramid(
     graph.fill_buffer("diffuse/vpl/clear-list", list, 0);
     let (lists, group_regions) = (u32::from(group_regions.is_some()), group_regions.unwrap_or(1));
     let pass = FirstRegions {
-        camera: buffer.camera.clone(),
-        depth: buffer.depth.sampled(),
-        surface: buffer.surface.sampled(),
+        surface: buffer.group.clone(),
         planes: planes.mip(0).write(),
         normals: normals.mip(0).write(),
         list: list.read_write(),
@@ -76,7 +74,7 @@ pub(crate) fn pyramid(
     graph.pass("diffuse/vpl/regions-2", pass).pixels(size.map(|side| side.div_ceil(2)));
     for level in 2..level_count {
         let pass = LargerRegions {
-            camera: buffer.camera.clone(),
+            surface: buffer.group.clone(),
             quarter_planes: planes.mip(level - 2).sampled(),
             quarter_normals: normals.mip(level - 2).sampled(),
             planes: planes.mip(level - 1).write(),

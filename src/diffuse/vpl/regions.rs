@@ -22,8 +22,7 @@ pub(super) fn mark(graph: &mut Graph<'_>, inputs: &VplInputs<'_>, pyramid: &Pyra
     let size = inputs.buffer.size;
     let stencil = graph.image("vpl.stencil", vk::Format::S8_UINT, flattened_size(size));
     let pass = MarkRegions {
-        depth: inputs.buffer.depth.sampled(),
-        surface: inputs.buffer.surface.sampled(),
+        surface: inputs.buffer.group.clone(),
         planes: pyramid.planes.sampled(),
         push: MarkRegionsPush { size: signed(size), level_count: pyramid.level_count.cast_signed() },
     };

@@ -14,7 +14,7 @@ const BLOCKS_PER_TILE: u32 = 4;
 
 /// Declares the passes that make `settings.count` VPLs of two texels each (glsl/lib/vpl.glsl).
 pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef<[f32; 4]> {
-    let VplInputs { set, lights, reflective, .. } = inputs;
+    let VplInputs { set, lights, .. } = inputs;
     let (tile_count, view_count) = (set.atlas.tiles.len() as u32, set.atlas.views.len() as u32);
     let vpl_count = inputs.options.count;
     let block_grid = set.atlas.size.map(|side| side.div_ceil(BLOCK_SIDE).max(1));
@@ -27,10 +27,7 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
 
     let pass = BlockFlux {
         tiles: tiles.read(),
-        views: lights.views.clone(),
-        light_depth: lights.depth.sampled(),
-        light_normal: reflective.normal.sampled(),
-        light_flux: reflective.flux.sampled(),
+        light_views: lights.group.clone(),
         blocks: blocks.write(),
         push: BlockFluxPush { tile_count },
     };
@@ -41,7 +38,7 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
     ]);
 
     let pass = BlockSums {
-        views: lights.views.clone(),
+        light_views: lights.group.clone(),
         blocks: blocks.sampled(),
         sums: sums.write_then_read(),
         view_fluxes: view_fluxes.write(),
@@ -56,10 +53,7 @@ pub(super) fn sample(graph: &mut Graph<'_>, inputs: &VplInputs<'_>) -> BufferRef
     graph.pass("diffuse/vpl/share", pass).note("views", u64::from(view_count)).groups([1, 1, 1]);
 
     let pass = Vpls {
-        views: lights.views.clone(),
-        light_depth: lights.depth.sampled(),
-        light_normal: reflective.normal.sampled(),
-        light_flux: reflective.flux.sampled(),
+        light_views: lights.group.clone(),
         sums: sums.sampled(),
         shares: shares.read(),
         vpls: vpls.write(),

@@ -34,19 +34,12 @@ impl Method for ShadowMap {
     fn declare(cx: &mut FrameCx<'_, '_>, options: &ShadowOptions) -> Result<Option<ImageRef>, Error> {
         let (buffer, lights) = (cx.frame.surface, cx.lights());
         let direct = cx.graph.image("direct", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
-        let (specular, has_specular) = buffer.specular();
         let pass = Pass {
-            camera: buffer.camera.clone(),
-            depth: buffer.depth.sampled(),
-            surface: buffer.surface.sampled(),
-            specular: specular.sampled(),
-            lights: lights.lights.clone(),
-            views: lights.views.clone(),
-            light_depth: lights.depth.sampled(),
+            surface: buffer.group.clone(),
+            light_views: lights.group.clone(),
             direct: direct.write(),
             push: ShadowMapPush {
                 light_count: lights.light_count,
-                has_specular,
                 normal_offset: options.normal_offset as f32,
                 filter_radius: i32::try_from(options.filter_radius).unwrap_or(0),
             },

@@ -11,12 +11,13 @@ use ash::vk;
 
 use self::options::TracedOptions;
 use crate::frame::gbuffer::GBuffer;
-use crate::frame::rays::{TracedBindings, TracedScene};
+use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::shaders::direct::{Directions, DirectionsPush, Emitters, EmittersPush, Punctual, PunctualPush};
+use crate::shaders::groups::{SceneLights, SceneRays};
 use crate::slot::{LightPaths, Slot};
 
 /// Rays to the lights: exact shadows; noise where light comes from surfaces or the sky.
@@ -47,8 +48,8 @@ impl Method for Traced {
         let wanted = |reason: Option<&'static str>| reason.or((options.samples == 0).then_some("no samples asked for"));
         let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
         let graph = &mut *cx.graph;
-        let bindings = scene.import(graph);
-        let frame = TracedFrame { buffer: cx.frame.surface, scene, bindings, shift, samples: options.samples };
+        let (rays, lights) = (scene.rays(graph), scene.lights(graph));
+        let frame = TracedFrame { buffer: cx.frame.surface, scene, rays, lights, shift, samples: options.samples };
         let mut direct = None;
         match (scene.punctual_count == 0).then_some("no punctual light") {
             Some(reason) => graph.skip("direct/punctual", reason),
@@ -70,7 +71,8 @@ impl Method for Traced {
 struct TracedFrame<'a> {
     buffer: &'a GBuffer,
     scene: &'a TracedScene,
-    bindings: TracedBindings,
+    rays: SceneRays,
+    lights: SceneLights,
     shift: [f32; 3],
     samples: u32,
 }
@@ -80,38 +82,17 @@ impl TracedFrame<'_> {
         graph.image(name, vk::Format::R32G32B32A32_SFLOAT, self.buffer.size)
     }
 
-    /// What was found before, or an image that stands for nothing, and whether it is real.
-    fn before(&self, found: Option<ImageRef>) -> (SampledImage, u32) {
-        (found.unwrap_or(self.buffer.depth).sampled(), u32::from(found.is_some()))
-    }
-
     fn punctual(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.punctual");
-        let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
-        let (scene, light_count) = (&self.bindings, self.scene.punctual_count);
+        let light_count = self.scene.punctual_count;
         let pass = Punctual {
-            camera: self.buffer.camera.clone(),
-            depth: self.buffer.depth.sampled(),
-            surface: self.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            before,
+            surface: self.buffer.group.clone(),
+            scene_rays: self.rays.clone(),
+            scene_lights: self.lights.clone(),
+            before: SampledImage::of(found),
             direct: direct.write(),
-            bvh_nodes: scene.bvh_nodes.clone(),
-            bvh_triangles: scene.bvh_triangles.clone(),
-            lights: scene.lights.clone(),
-            triangles: scene.triangles.clone(),
-            corner_colors: scene.corner_colors.clone(),
-            corner_texcoords: scene.corner_texcoords.clone(),
-            materials: scene.materials.clone(),
-            material_textures: scene.material_textures.clone(),
-            texture_table: scene.texture_table.clone(),
-            texels: scene.texels.clone(),
-            specular_lobes: has_specular,
-            transmissive: 0,
-            adds,
-            alpha_masks: u32::from(self.scene.facts.alpha_masked),
-            vertex_colors: u32::from(self.scene.facts.vertex_colors),
+            specular_lobes: self.buffer.group.has_specular,
+            adds: u32::from(found.is_some()),
             push: PunctualPush { shift: self.shift, light_count },
         };
         graph.pass("direct/punctual", pass).note("lights", u64::from(light_count)).pixels(self.buffer.size);
@@ -120,36 +101,18 @@ impl TracedFrame<'_> {
 
     fn emitters(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.emitters");
-        let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
-        let (scene, emitter_count) = (&self.bindings, self.scene.emissive_count);
         let pass = Emitters {
-            camera: self.buffer.camera.clone(),
-            depth: self.buffer.depth.sampled(),
-            surface: self.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            before,
+            surface: self.buffer.group.clone(),
+            scene_rays: self.rays.clone(),
+            scene_lights: self.lights.clone(),
+            before: SampledImage::of(found),
             direct: direct.write(),
-            bvh_nodes: scene.bvh_nodes.clone(),
-            bvh_triangles: scene.bvh_triangles.clone(),
-            emitters: scene.emissive.clone(),
-            sobol: scene.sobol.clone(),
-            triangles: scene.triangles.clone(),
-            corner_colors: scene.corner_colors.clone(),
-            corner_texcoords: scene.corner_texcoords.clone(),
-            materials: scene.materials.clone(),
-            material_textures: scene.material_textures.clone(),
-            texture_table: scene.texture_table.clone(),
-            texels: scene.texels.clone(),
-            specular_lobes: has_specular,
+            specular_lobes: self.buffer.group.has_specular,
             transmissive: 0,
-            adds,
-            emissive_textures: u32::from(self.scene.emissive_textures),
-            alpha_masks: u32::from(self.scene.facts.alpha_masked),
-            vertex_colors: u32::from(self.scene.facts.vertex_colors),
+            adds: u32::from(found.is_some()),
             push: EmittersPush {
                 shift: self.shift,
-                emitter_count,
+                emitter_count: self.scene.emissive_count,
                 sample_count: self.samples,
                 density_scale: self.scene.emissive_density_scale,
             },
@@ -160,33 +123,16 @@ impl TracedFrame<'_> {
 
     fn directions(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
         let direct = self.image(graph, "direct.directions");
-        let (specular, has_specular) = self.buffer.specular();
-        let (before, adds) = self.before(found);
-        let scene = &self.bindings;
         let pass = Directions {
-            camera: self.buffer.camera.clone(),
-            depth: self.buffer.depth.sampled(),
-            surface: self.buffer.surface.sampled(),
-            specular: specular.sampled(),
-            before,
+            surface: self.buffer.group.clone(),
+            scene_rays: self.rays.clone(),
+            scene_lights: self.lights.clone(),
+            before: SampledImage::of(found),
             direct: direct.write(),
-            bvh_nodes: scene.bvh_nodes.clone(),
-            bvh_triangles: scene.bvh_triangles.clone(),
-            sobol: scene.sobol.clone(),
-            triangles: scene.triangles.clone(),
-            corner_colors: scene.corner_colors.clone(),
-            corner_texcoords: scene.corner_texcoords.clone(),
-            materials: scene.materials.clone(),
-            material_textures: scene.material_textures.clone(),
-            texture_table: scene.texture_table.clone(),
-            texels: scene.texels.clone(),
-            specular_lobes: has_specular,
+            specular_lobes: self.buffer.group.has_specular,
             transmissive: 0,
-            adds,
-            emissive_textures: u32::from(self.scene.emissive_textures),
+            adds: u32::from(found.is_some()),
             finds_emitters: u32::from(self.scene.emissive_count > 0),
-            alpha_masks: u32::from(self.scene.facts.alpha_masked),
-            vertex_colors: u32::from(self.scene.facts.vertex_colors),
             push: DirectionsPush {
                 shift: self.shift,
                 sample_count: self.samples,

@@ -7,4 +7,4 @@ mod texels;
 mod traced_scene;
 mod triangles;
 
-pub(crate) use self::traced_scene::{TracedBindings, TracedScene, surfaces_key, traced_key};
+pub(crate) use self::traced_scene::{TracedScene, surfaces_key, traced_key};

@@ -18,6 +18,7 @@ use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
 use crate::scene::{Bounds, Facts, Material, Scene};
+use crate::shaders::groups::{SceneLights, SceneRays};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
 
@@ -50,27 +51,6 @@ pub(crate) struct TracedScene {
     /// What all lights but the sky send out, W (luminance).
     pub(crate) power: f64,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
-}
-
-/// The scene's buffers as passes bind them.
-#[derive(Clone)]
-pub(crate) struct TracedBindings {
-    pub(crate) bvh_nodes: TexelBuffer,
-    pub(crate) bvh_triangles: TexelBuffer,
-    pub(crate) triangles: TexelBuffer,
-    pub(crate) corner_colors: TexelBuffer,
-    pub(crate) corner_texcoords: TexelBuffer,
-    pub(crate) corner_tangents: TexelBuffer,
-    pub(crate) materials: TexelBuffer,
-    pub(crate) media: TexelBuffer,
-    pub(crate) material_textures: TexelBuffer,
-    pub(crate) texture_table: TexelBuffer,
-    pub(crate) texels: TexelBuffer,
-    pub(crate) emitters: TexelBuffer,
-    /// Emissive triangles alone.
-    pub(crate) emissive: TexelBuffer,
-    pub(crate) lights: TexelBuffer,
-    pub(crate) sobol: TexelBuffer,
 }
 
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -172,18 +152,19 @@ impl TracedScene {
         self.buffers.iter().map(|(_, buffer, _)| buffer.bytes()).sum()
     }
 
-    pub(crate) fn import(&self, graph: &mut Graph<'_>) -> TracedBindings {
-        let mut bind = |name: &str, dependence: Dependence| {
-            let found = self.buffers.iter().find(|(known, ..)| *known == name);
-            let (name, buffer, format) = found.expect("every buffer is made with the scene");
-            graph.import_buffer::<u32>(name, buffer, self.key, dependence).texels(*format)
-        };
+    fn bind(&self, graph: &mut Graph<'_>, name: &str, key: u64, dependence: Dependence) -> TexelBuffer {
+        let found = self.buffers.iter().find(|(known, ..)| *known == name);
+        let (name, buffer, format) = found.expect("every buffer is made with the scene");
+        graph.import_buffer::<u32>(name, buffer, key, dependence).texels(*format)
+    }
+
+    /// What rays meet, as passes bind it.
+    pub(crate) fn rays(&self, graph: &mut Graph<'_>) -> SceneRays {
         let (geometry, materials) = (Dependence::GEOMETRY, Dependence::MATERIALS);
-        let lights = geometry | materials | Dependence::LIGHTS;
-        TracedBindings {
+        let mut bind = |name: &str, dependence| self.bind(graph, name, self.surfaces_key, dependence);
+        SceneRays {
             bvh_nodes: bind("traced.bvh_nodes", geometry),
             bvh_triangles: bind("traced.bvh_triangles", geometry),
-            triangles: bind("traced.triangles", geometry),
             corner_colors: bind("traced.corner_colors", geometry),
             corner_texcoords: bind("traced.corner_texcoords", geometry),
             corner_tangents: bind("traced.corner_tangents", geometry),
@@ -192,10 +173,25 @@ impl TracedScene {
             material_textures: bind("traced.material_textures", materials),
             texture_table: bind("traced.texture_table", materials),
             texels: bind("traced.texels", materials),
-            emitters: bind("traced.emitters", lights),
-            emissive: bind("traced.emissive", lights),
-            lights: bind("traced.lights", lights),
             sobol: bind("traced.sobol", Dependence::NONE),
+            // They hold the densities that lights are drawn with.
+            triangles: self.bind(graph, "traced.triangles", self.key, geometry),
+            alpha_masks: u32::from(self.cutouts),
+            vertex_colors: u32::from(self.facts.vertex_colors),
+            normal_maps: u32::from(self.facts.normal_mapped),
+            textures: self.texture_kinds,
+        }
+    }
+
+    /// What shines on it.
+    pub(crate) fn lights(&self, graph: &mut Graph<'_>) -> SceneLights {
+        let lights = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS;
+        let mut bind = |name: &str| self.bind(graph, name, self.key, lights);
+        SceneLights {
+            emitters: bind("traced.emitters"),
+            emissive_triangles: bind("traced.emissive"),
+            punctual_lights: bind("traced.lights"),
+            emissive_textures: u32::from(self.emissive_textures),
         }
     }
 }

@@ -1,0 +1,23 @@
+// Paths on their way, as kernels read them (path/state.glsl, path/vertex.glsl), and what all kernels of a walk are compiled for.
+// group: bindings 80 to 87, constants 48 to 55
+#ifndef GROUPS_PATHS
+#define GROUPS_PATHS
+
+// 1: paths from lights.
+layout(constant_id = 48) const uint FROM_LIGHT = 0u;
+// 1: lights send out paths of their own, so that camera paths carry the ratio C of path/mis.glsl.
+layout(constant_id = 49) const uint LIGHT_PATHS = 1u;
+// What a camera's path leaves to photons behind its first diffuse vertex (path/state.glsl).
+layout(constant_id = 50) const uint PHOTONS = 0u;
+// 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
+layout(constant_id = 51) const uint SPECULAR_CAUSTICS = 0u;
+
+layout(set = 0, binding = 80) uniform samplerBuffer path_rays;
+layout(set = 0, binding = 81) uniform samplerBuffer path_states;
+layout(set = 0, binding = 82) uniform usamplerBuffer path_flags;
+layout(set = 0, binding = 83) uniform usamplerBuffer path_seeds;
+layout(set = 0, binding = 84) uniform usamplerBuffer path_vertices;
+layout(set = 0, binding = 85) uniform usamplerBuffer active_paths;  // on their way to the vertex
+layout(set = 0, binding = 86) uniform usamplerBuffer alive_paths;   // that go on from there
+
+#endif
