@@ -15,6 +15,8 @@ mod generate;
 mod groups;
 #[path = "build/limits.rs"]
 pub(crate) mod limits;
+#[path = "build/live.rs"]
+mod live;
 #[path = "build/reflect.rs"]
 pub(crate) mod reflect;
 #[path = "build/words.rs"]
@@ -26,8 +28,21 @@ use limits::Exception;
 use shaderc::{CompileOptions, Compiler, EnvVersion, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
 
 fn main() {
-    println!("cargo::rerun-if-changed=glsl");
+    if let [_, folder, program, interface] = &env::args().collect::<Vec<_>>()[..] {
+        if let Err(message) = answer(Path::new(folder), program, interface) {
+            eprintln!("{message}");
+            exit(1);
+        }
+        return;
+    }
+    // While a debug build takes its shaders from a folder, a change to one of them need not build it anew.
+    println!("cargo::rerun-if-env-changed=IRRADIA_SHADERS");
+    if env::var_os("IRRADIA_SHADERS").is_none() || env::var("PROFILE").is_ok_and(|profile| profile != "debug") {
+        println!("cargo::rerun-if-changed=glsl");
+    }
     println!("cargo::rerun-if-changed=build");
+    let compiler = env::current_exe().expect("the build script knows where it lies");
+    println!("cargo::rustc-env=IRRADIA_SHADER_COMPILER={}", compiler.display());
     let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     if let Err(message) = build(Path::new("glsl"), &out_dir, limits::EXCEPTIONS) {
         for line in message.lines() {
@@ -38,8 +53,38 @@ fn main() {
 }
 
 pub(crate) fn build(root: &Path, out_dir: &Path, exceptions: &[Exception]) -> Result<(), String> {
-    let compiler = Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))?;
+    let compiler = compiler()?;
     let groups = read_groups(&compiler, root)?;
+    let programs = programs(&compiler, root, &groups, |_, _| true)?;
+    limits::check(&programs, exceptions)?;
+    for stage in programs.iter().flat_map(|program| &program.stages) {
+        fs::write(out_dir.join(&stage.spirv_file), &stage.spirv)
+            .map_err(|error| format!("{}: {error}", stage.spirv_file))?;
+    }
+    live::write_interfaces(&programs, &groups, out_dir)?;
+    let source = generate::generate(&programs, &groups)?;
+    fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
+}
+
+/// Compiles one program for a debug build that runs already.
+fn answer(root: &Path, name: &str, interface: &str) -> Result<(), String> {
+    let compiler = compiler()?;
+    let groups = read_groups(&compiler, root)?;
+    let programs = programs(&compiler, root, &groups, |piece, pass| name == format!("{piece}/{pass}"))?;
+    live::answer(programs.first(), &groups, name, interface)
+}
+
+fn compiler() -> Result<Compiler, String> {
+    Compiler::new().map_err(|error| format!("shaderc did not start: {error}"))
+}
+
+/// Compiles the shaders below `root` whose piece and pass are `wanted`.
+fn programs(
+    compiler: &Compiler,
+    root: &Path,
+    groups: &[Group],
+    wanted: impl Fn(&str, &str) -> bool,
+) -> Result<Vec<Program>, String> {
     let mut programs: BTreeMap<(String, String), Program> = BTreeMap::new();
     for path in shader_files(root)? {
         let part =
@@ -52,23 +97,25 @@ pub(crate) fn build(root: &Path, out_dir: &Path, exceptions: &[Exception]) -> Re
             "frag" => ("Fragment", ShaderKind::Fragment),
             _ => continue,
         };
+        if !wanted(&piece, &pass) {
+            continue;
+        }
         let source = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let (words, included) = compile(&compiler, root, &path, &source, stage_kind)?;
+        let (words, included) = compile(compiler, root, &path, &source, stage_kind)?;
         let in_file = |error| format!("{}: {error}", path.display());
         let stage = reflect::reflect(&words).map_err(in_file)?;
-        for group in &groups {
+        for group in groups {
             group.check(&format!("{piece}/{pass}"), &stage, included.contains(&group.name))?;
         }
         let words = words::without_unused(&words, &words::static_use(&words).map_err(in_file)?).map_err(in_file)?;
+        let spirv = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let spirv_file = format!("{piece}.{pass}.{}.spv", part(path.extension()));
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        fs::write(out_dir.join(&spirv_file), bytes).map_err(|error| format!("{spirv_file}: {error}"))?;
         let new = || Program { piece: piece.clone(), pass: pass.clone(), summary: String::new(), stages: Vec::new() };
         let program = programs.entry((piece.clone(), pass.clone())).or_insert_with(new);
         if program.summary.is_empty() || stage_kind == ShaderKind::Fragment {
             program.summary = summary(&source).unwrap_or_else(|| format!("`glsl/{piece}/{pass}`."));
         }
-        program.stages.push(CompiledStage { kind, spirv_file, stage });
+        program.stages.push(CompiledStage { kind, spirv_file, spirv, stage });
     }
     let mut programs: Vec<Program> = programs.into_values().collect();
     for program in &mut programs {
@@ -76,9 +123,7 @@ pub(crate) fn build(root: &Path, out_dir: &Path, exceptions: &[Exception]) -> Re
             ["Vertex", "Geometry", "Fragment", "Compute"].iter().position(|kind| *kind == stage.kind)
         });
     }
-    limits::check(&programs, exceptions)?;
-    let source = generate::generate(&programs, &groups)?;
-    fs::write(out_dir.join("shaders.rs"), source).map_err(|error| format!("shaders.rs: {error}"))
+    Ok(programs)
 }
 
 /// The groups of `glsl/groups/`, each compiled by itself.

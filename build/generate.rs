@@ -7,10 +7,11 @@ use std::fmt::Write as _;
 use super::groups::Group;
 use super::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
 
-/// A stage of a program, and the file in `OUT_DIR` that holds its SPIR-V.
+/// A stage of a program, its SPIR-V, and the file in `OUT_DIR` that holds it.
 pub(crate) struct CompiledStage {
     pub(crate) kind: &'static str,
     pub(crate) spirv_file: String,
+    pub(crate) spirv: Vec<u8>,
     pub(crate) stage: Stage,
 }
 

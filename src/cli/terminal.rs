@@ -10,11 +10,14 @@ use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use irradia::reference;
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
+use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::fmt::format::Writer;
 use tracing_subscriber::fmt::{FmtContext, FormatEvent, FormatFields, MakeWriter};
+use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::registry::LookupSpan;
+use tracing_subscriber::util::SubscriberInitExt as _;
 
-/// The variable that overrides which log lines appear, in the syntax of tracing-subscriber: `irradia=debug`.
+/// The variable that overrides which log lines appear, in the syntax of tracing-subscriber's `Targets`: `irradia=debug`.
 const LOG_VARIABLE: &str = "IRRADIA_LOG";
 
 /// How much is said.
@@ -43,18 +46,24 @@ impl Terminal {
         let target = if drawn { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bars = MultiProgress::with_draw_target(target);
         let level = match verbosity {
-            Verbosity::Quiet => "error",
-            Verbosity::Normal => "warn",
-            Verbosity::Verbose => "info",
-            Verbosity::Everything => "debug",
+            Verbosity::Quiet => LevelFilter::ERROR,
+            Verbosity::Normal => LevelFilter::WARN,
+            Verbosity::Verbose => LevelFilter::INFO,
+            Verbosity::Everything => LevelFilter::DEBUG,
         };
-        let wanted = std::env::var(LOG_VARIABLE).unwrap_or_else(|_| level.to_owned());
+        let wanted = std::env::var(LOG_VARIABLE).ok();
+        let filter = wanted.as_ref().and_then(|wanted| wanted.parse().ok());
+        let misread = wanted.filter(|_| filter.is_none());
+        let lines =
+            tracing_subscriber::fmt::layer().with_writer(AboveBars(bars.clone())).event_format(Sentences::default());
         // A second start, as tests might do, leaves the first in place.
-        let _ = tracing_subscriber::fmt()
-            .with_env_filter(tracing_subscriber::EnvFilter::new(wanted))
-            .with_writer(AboveBars(bars.clone()))
-            .event_format(Sentences::default())
+        let _ = tracing_subscriber::registry()
+            .with(lines)
+            .with(filter.unwrap_or_else(|| Targets::new().with_default(level)))
             .try_init();
+        if let Some(wanted) = misread {
+            tracing::warn!("{LOG_VARIABLE}={wanted} is no list of levels such as irradia=debug");
+        }
         Terminal { verbosity, bars }
     }
 

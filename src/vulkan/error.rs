@@ -72,6 +72,9 @@ pub enum VulkanError {
         /// What the device allows.
         limit: String,
     },
+    /// A shader of the folder that `IRRADIA_SHADERS` names, in a debug build, cannot be used.
+    #[error("{0}")]
+    Shader(String),
     /// Any other failed call.
     #[error("the Vulkan call {call} failed: {result}")]
     Call {

@@ -10,6 +10,8 @@ mod device;
 mod draw;
 mod error;
 mod instance;
+#[cfg(debug_assertions)]
+mod live_shaders;
 mod memory;
 mod pipelines;
 pub(crate) mod program;

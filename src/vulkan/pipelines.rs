@@ -229,8 +229,7 @@ impl Pipelines {
             vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(constants));
         let mut modules = Vec::new();
         let mut stages = Vec::new();
-        for stage in program.stages {
-            let words = stage.spirv.words();
+        for (stage, words) in program.stages.iter().zip(program.spirv()?) {
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
             // SAFETY: the code is glslang's, for this version of Vulkan.
             let module = unsafe { raw.create_shader_module(&info, None) }

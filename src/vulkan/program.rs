@@ -2,6 +2,10 @@
 
 use ash::vk;
 
+use super::error::VulkanError;
+#[cfg(debug_assertions)]
+use super::live_shaders;
+
 /// A shader program: one compute stage, or vertex, geometry and fragment stages.
 #[derive(Debug)]
 pub(crate) struct Program {
@@ -27,6 +31,15 @@ impl Program {
 
     pub(crate) fn has_set(&self, set: u32) -> bool {
         self.bindings.iter().any(|binding| binding.set == set)
+    }
+
+    /// The SPIR-V of each stage.
+    pub(crate) fn spirv(&self) -> Result<Vec<Vec<u32>>, VulkanError> {
+        #[cfg(debug_assertions)]
+        if let Some(stages) = live_shaders::spirv(self.name)? {
+            return Ok(stages);
+        }
+        Ok(self.stages.iter().map(|stage| stage.spirv.words()).collect())
     }
 
     pub(crate) fn stage_flags(&self) -> vk::ShaderStageFlags {

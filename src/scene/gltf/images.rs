@@ -2,11 +2,10 @@
 
 use super::document::{self, get};
 use super::loader::Loader;
+use super::pixels;
 use crate::scene::{Texture, TextureId, Wrap};
-use image::{ImageReader, Limits};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
-use std::io::Cursor;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Longest side of an image in texels.
@@ -126,21 +125,8 @@ impl<'a> Loader<'a> {
                 &file
             }
         };
-        let reader = || {
-            let mut reader =
-                ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
-            if reader.format().is_none() {
-                return Err("it is neither PNG nor JPEG".to_owned());
-            }
-            let mut limits = Limits::default();
-            limits.max_image_width = Some(LARGEST_SIDE);
-            limits.max_image_height = Some(LARGEST_SIDE);
-            limits.max_alloc = Some(LARGEST_TOTAL);
-            reader.limits(limits);
-            Ok(reader)
-        };
         // The header alone is read first: what it claims decides whether anything is allocated.
-        let (width, height) = reader()?.into_dimensions().map_err(|error| error.to_string())?;
+        let [width, height] = pixels::claimed_size(bytes)?;
         let texels = u64::from(width) * u64::from(height);
         if width.max(height) > LARGEST_SIDE || texels > TEXELS_PER_BYTE.saturating_mul(bytes.len() as u64) {
             return Err(format!("its {} bytes claim {width}×{height} texels, which cannot be", bytes.len()));
@@ -149,9 +135,11 @@ impl<'a> Loader<'a> {
         if total.fetch_add(claimed, Ordering::Relaxed).saturating_add(claimed) > LARGEST_TOTAL {
             return Err(format!("the scene's textures need more than {} GiB; make them smaller", LARGEST_TOTAL >> 30));
         }
-        let image = reader()?.decode().map_err(|error| format!("it cannot be decoded ({error})"))?;
-        let rgba = image.into_rgba8();
-        Ok(Decoded { width: rgba.width(), height: rgba.height(), rgba8: rgba.into_raw() })
+        let rgba8 = pixels::decode(bytes, usize::try_from(LARGEST_TOTAL).unwrap_or(usize::MAX))?;
+        if rgba8.len() as u64 != texels * 4 {
+            return Err(format!("it does not hold the {width}×{height} texels that it claims"));
+        }
+        Ok(Decoded { width, height, rgba8 })
     }
 }
 

@@ -12,6 +12,7 @@ mod images;
 mod loader;
 mod materials;
 mod nodes;
+mod pixels;
 mod primitives;
 
 use super::{Scene, SceneError};

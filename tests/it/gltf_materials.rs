@@ -1,8 +1,6 @@
 //! What the glTF reader promises of materials and textures, feature by feature, on files made here.
 
-mod gltf_file;
-
-use gltf_file::File;
+use crate::gltf_file::{self, File};
 use irradia::scene::{Alpha, Wrap};
 use serde_json::{Value, json};
 
@@ -100,6 +98,21 @@ fn grey_and_16_bit_images_are_converted() {
         let texture = file.texture(&bytes, json!({}));
         file.material(json!({"emissiveTexture": {"index": texture}}));
         assert_eq!(file.load().expect("it is sound").textures()[0].rgba8, expected);
+    }
+}
+
+#[test]
+fn jpegs_are_grey_or_in_colour() {
+    // R = Y + 1.402 (Cr - 128), G = Y - 0.714 (Cr - 128), B = Y where Cb is 128; decoders round as they like.
+    for (values, expected) in [(vec![200], [200, 200, 200, 255]), (vec![100, 128, 178], [170, 64, 100, 255])] {
+        let mut file = File::triangle();
+        let texture = file.texture(&gltf_file::jpeg(&values), json!({}));
+        file.material(json!({"emissiveTexture": {"index": texture}}));
+        let scene = file.load().expect("it is sound");
+        let texture = &scene.textures()[0];
+        assert_eq!((texture.width, texture.height), (8, 8));
+        let near = |texel: &[u8; 4]| texel.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
+        assert!(texture.rgba8.as_chunks().0.iter().all(near), "{:?}", &texture.rgba8[..4]);
     }
 }
 

@@ -4,15 +4,13 @@
 //! All paths that start with `crate`, `super`, `self`, a child module or, in the program, `irradia` count, not those of `use` lines alone. A path through
 //! a re-export counts as one to the file that has the item.
 
-#[path = "house/paths.rs"]
 mod paths;
-#[path = "house/source.rs"]
 mod source;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use source::Tree;
+use self::source::Tree;
 
 /// The rooms, each with its level: a room uses rooms of lower levels, and itself.
 const ROOMS: &[(u32, &[&str])] = &[

@@ -8,6 +8,8 @@ use std::process::{Command, Output};
 
 use irradia::bench::sweep::{Grid, Sweep};
 
+use crate::files::empty_folder;
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -33,14 +35,8 @@ fn assert_fails(arguments: &[&str], words: &[&str]) {
     }
 }
 
-/// An empty folder for one test, made anew every time.
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sweeps").join(test);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("the test's own folder");
-    }
-    fs::create_dir_all(&path).expect("the target folder is writable");
-    path
+    empty_folder("sweeps", test)
 }
 
 fn text(path: &Path) -> &str {

@@ -9,14 +9,10 @@ use irradia::bench::comparison::ComparisonReport;
 use irradia::output::{Attributes, write_exr};
 use irradia::renderer::{ColorImage, Slot};
 
-/// An empty folder for one test, made anew every time.
+use crate::files::{empty_folder, read_png};
+
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compare").join(test);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("the test's own folder");
-    }
-    fs::create_dir_all(&path).expect("the target folder is writable");
-    path
+    empty_folder("compare", test)
 }
 
 /// Runs in `folder`, so that messages hold the files' names alone; without Vulkan, which it shall not need.
@@ -106,13 +102,13 @@ fn json_and_heat_map_are_written_whole() {
     assert_eq!(report.errors.keys().collect::<Vec<_>>(), ["diffuse", "image"]);
     assert_eq!((report.errors["image"].errors.rmse, report.errors["image"].bias), (0.5, [0.5; 3]));
     assert_eq!(report.noise, BTreeMap::from([("image".to_owned(), 1e-3), ("diffuse".to_owned(), 0.02)]));
-    let map = image::open(folder.join("c.png")).expect("a PNG").to_rgb8();
-    assert_eq!(map.dimensions(), (24, 16 + 12));
+    let (size, map) = read_png(&folder.join("c.png"));
+    assert_eq!(size, [24, 16 + 12]);
     // 0.02 of the mean everywhere; in the whole image it is one half.
-    let diffuse = *map.get_pixel(5, 5);
-    assert!(map.pixels().take(24 * 16).all(|pixel| *pixel == diffuse));
+    let diffuse = map[0];
+    assert!(map.iter().take(24 * 16).all(|pixel| *pixel == diffuse));
     compare(&folder, &["a.exr", "b.exr", "-q", "--heatmap", "d.png"]);
-    let whole = *image::open(folder.join("d.png")).expect("a PNG").to_rgb8().get_pixel(5, 5);
+    let whole = read_png(&folder.join("d.png")).1[0];
     assert!(whole[0] > diffuse[0], "{whole:?} is brighter than {diffuse:?}");
 }
 

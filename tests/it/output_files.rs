@@ -4,14 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// An empty folder for one test, made anew every time.
+use crate::files::empty_folder;
+
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("output-files").join(test);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("the test's own folder");
-    }
-    fs::create_dir_all(&path).expect("the target folder is writable");
-    path
+    empty_folder("output-files", test)
 }
 
 fn render(output: &Path, more: &[&str]) -> Output {

@@ -9,7 +9,7 @@ use serde_json::Value;
 #[test]
 fn settings_written_before_there_were_tables_of_options_still_load() {
     let written: Vec<Value> =
-        serde_json::from_str(include_str!("data/settings-before-options.json")).expect("a list of settings");
+        serde_json::from_str(include_str!("../data/settings-before-options.json")).expect("a list of settings");
     for json in written {
         let name = |key: &str| json[key].as_str().expect("a name");
         let technique = Technique::from_name(name("technique")).expect("a technique");
@@ -23,7 +23,7 @@ fn settings_written_before_there_were_tables_of_options_still_load() {
     }
 }
 
-/// `docs/settings.md` as it ought to be; `IRRADIA_WRITE_DOCS=1 cargo test --test settings` writes it.
+/// `docs/settings.md` as it ought to be; `IRRADIA_WRITE_DOCS=1 cargo test --test it settings` writes it.
 #[test]
 fn the_documented_settings_are_those_there_are() {
     let mut text = String::from(
@@ -48,6 +48,6 @@ fn the_documented_settings_are_those_there_are() {
     let documented = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         documented == text,
-        "docs/settings.md is out of date; IRRADIA_WRITE_DOCS=1 cargo test --test settings writes it"
+        "docs/settings.md is out of date; IRRADIA_WRITE_DOCS=1 cargo test --test it settings writes it"
     );
 }

@@ -1,8 +1,6 @@
 //! Damaged files: whatever bytes change, the reader returns, and soon.
 
-mod gltf_file;
-
-use gltf_file::File;
+use crate::gltf_file::{self, File};
 use irradia::scene::Scene;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;

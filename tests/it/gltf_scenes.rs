@@ -1,9 +1,7 @@
 //! What the glTF reader promises of nodes, cameras, lights, animations and files as such, on files made here.
 
-mod gltf_file;
-
+use crate::gltf_file::File;
 use glam::{DAffine3, DQuat, DVec3};
-use gltf_file::File;
 use irradia::scene::{LightKind, NodeId, Projection, Scene, SceneError};
 use serde_json::json;
 

@@ -1,12 +1,8 @@
 //! Small glTF files made in memory.
 
-#![allow(dead_code, reason = "each test program uses its own part of this")]
-
 use base64::Engine;
-use image::{DynamicImage, ImageBuffer, ImageFormat};
 use irradia::scene::{Scene, SceneError};
 use serde_json::{Value, json};
-use std::io::Cursor;
 
 /// A glTF document with one buffer.
 pub(crate) struct File {
@@ -132,26 +128,65 @@ pub(crate) fn float_bytes(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-fn encode(image: DynamicImage) -> Vec<u8> {
+fn encode([width, height]: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    image.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).expect("it can be encoded");
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().expect("it can be encoded");
+    writer.write_image_data(data).expect("the texels fit");
+    writer.finish().expect("it can be encoded");
     bytes
 }
 
 pub(crate) fn png(width: u32, height: u32, rgba: &[u8]) -> Vec<u8> {
-    encode(DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, rgba.to_vec()).expect("the texels fit")))
+    encode([width, height], png::ColorType::Rgba, png::BitDepth::Eight, rgba)
 }
 
 pub(crate) fn grey_png(grey: &[u8]) -> Vec<u8> {
-    encode(DynamicImage::ImageLuma8(
-        ImageBuffer::from_raw(grey.len() as u32, 1, grey.to_vec()).expect("the texels fit"),
-    ))
+    encode([grey.len() as u32, 1], png::ColorType::Grayscale, png::BitDepth::Eight, grey)
 }
 
 pub(crate) fn png_16(rgba: &[u16]) -> Vec<u8> {
-    encode(DynamicImage::ImageRgba16(
-        ImageBuffer::from_raw(rgba.len() as u32 / 4, 1, rgba.to_vec()).expect("the texels fit"),
-    ))
+    let bytes: Vec<u8> = rgba.iter().flat_map(|value| value.to_be_bytes()).collect();
+    encode([rgba.len() as u32 / 4, 1], png::ColorType::Rgba, png::BitDepth::Sixteen, &bytes)
+}
+
+/// A JPEG of 8×8 equal texels: grey if there is one value, else Y, Cb and Cr. Its blocks hold a mean and no more.
+pub(crate) fn jpeg(values: &[u8]) -> Vec<u8> {
+    let count = values.len() as u8;
+    let segment =
+        |marker: u8, content: &[u8]| [&[0xFF, marker], &(content.len() as u16 + 2).to_be_bytes()[..], content].concat();
+    let quantisation = [&[0], &[1; 64][..]].concat();
+    let frame: Vec<u8> = (1..=count).flat_map(|component| [component, 0x11, 0]).collect();
+    let means = [&[0x00, 0, 0, 0, 12], &[0; 12][..], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]].concat(); // four bits each
+    let waves = [&[0x10, 1], &[0; 15][..], &[0]].concat(); // the end of a block, in one bit
+    let scan: Vec<u8> = (1..=count).flat_map(|component| [component, 0]).collect();
+    let mut bits = String::new();
+    for &value in values {
+        let mean = 8 * (i32::from(value) - 128);
+        let width = (i32::BITS - mean.abs().leading_zeros()) as usize;
+        let code = if mean < 0 { mean + (1 << width) - 1 } else { mean };
+        bits += &format!("{width:04b}");
+        if width > 0 {
+            bits += &format!("{code:0width$b}");
+        }
+        bits.push('0');
+    }
+    bits += &"1".repeat(bits.len().next_multiple_of(8) - bits.len());
+    let bytes = bits.as_bytes().chunks(8).map(|bits| bits.iter().fold(0, |byte, bit| byte << 1 | (bit - b'0')));
+    let data: Vec<u8> = bytes.flat_map(|byte| if byte == 0xFF { vec![byte, 0] } else { vec![byte] }).collect();
+    [
+        vec![0xFF, 0xD8],
+        segment(0xDB, &quantisation),
+        segment(0xC0, &[&[8, 0, 8, 0, 8, count], &frame[..]].concat()),
+        segment(0xC4, &means),
+        segment(0xC4, &waves),
+        segment(0xDA, &[&[count], &scan[..], &[0, 63, 0]].concat()),
+        data,
+        vec![0xFF, 0xD9],
+    ]
+    .concat()
 }
 
 /// The checksum of PNG chunks.

@@ -11,18 +11,14 @@ use irradia::output::read_exr;
 use irradia::renderer::{Slot, ToneMap};
 use irradia::scene::builtin_names;
 
+use crate::files::{empty_folder, read_png};
+
 fn irradia(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_irradia")).args(arguments).output().expect("the program starts")
 }
 
-/// An empty folder for one test, made anew every time.
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("the test's own folder");
-    }
-    fs::create_dir_all(&path).expect("the target folder is writable");
-    path
+    empty_folder("cli", test)
 }
 
 fn names_in(folder: &Path) -> Vec<String> {
@@ -250,9 +246,9 @@ fn a_png_shows_what_the_tone_map_makes_of_the_exr() {
     for (name, map) in [("linear", ToneMap::Linear), ("aces", ToneMap::Aces), ("drago", ToneMap::Drago)] {
         let png = folder.join(name).with_extension("png");
         succeed(&["render", any_scene(), "-o", text(&png), "--size", "48x32", "--tonemap", name]);
-        let shown = image::open(&png).expect("a PNG").to_rgb8();
+        let (_, shown) = read_png(&png);
         let expected = irradia::image::tone_map(&image, map);
-        let worst = shown.iter().zip(expected.as_flattened()).map(|(a, b)| a.abs_diff(*b)).max();
+        let worst = shown.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(worst <= Some(1), "{name}: device and host are {worst:?} levels apart");
     }
 }

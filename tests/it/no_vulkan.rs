@@ -4,14 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// An empty folder for one test, made anew every time.
+use crate::files::empty_folder;
+
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no-vulkan").join(test);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("the test's own folder");
-    }
-    fs::create_dir_all(&path).expect("the target folder is writable");
-    path
+    empty_folder("no-vulkan", test)
 }
 
 /// Runs every subcommand that needs a device with `variables` set and `arguments` added.

@@ -1,8 +1,6 @@
 //! What the glTF reader promises of meshes, feature by feature, on files made here.
 
-mod gltf_file;
-
-use gltf_file::File;
+use crate::gltf_file::{self, File};
 use irradia::scene::Primitive;
 use serde_json::json;
 

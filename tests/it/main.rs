@@ -1,0 +1,20 @@
+//! Tests from outside: the library and the program as others use them. One file a capability, one program to link.
+
+mod cli;
+mod compare;
+mod files;
+mod gltf_file;
+mod gltf_materials;
+mod gltf_meshes;
+mod gltf_scenes;
+mod house;
+mod light_notation;
+#[cfg(debug_assertions)]
+mod live_shaders;
+mod no_vulkan;
+mod output_files;
+mod scene;
+mod scene_fuzz;
+mod settings;
+mod shared_scenes;
+mod sweeps;
