@@ -15,6 +15,8 @@ pub(crate) struct FrameInputs<'f> {
     pub(crate) facts: &'f Facts,
     pub(crate) geometry: &'f Geometry,
     pub(crate) camera: &'f types::Camera,
+    /// Radiance where there is no surface, W/(m² sr).
+    pub(crate) sky: [f32; 3],
     pub(crate) surface: &'f GBuffer,
     pub(crate) set: &'f LightSet,
     /// Present where some method takes them and something shines.

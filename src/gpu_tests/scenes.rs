@@ -8,18 +8,18 @@ use crate::scene::{
 };
 
 /// Diffuse alone: no specular layer takes a share.
-pub(super) fn lambert(albedo: [f32; 3]) -> Material {
+pub(crate) fn lambert(albedo: [f32; 3]) -> Material {
     let [red, green, blue] = albedo;
     Material { base_color: [red, green, blue, 1.0], specular: 0.0, ..Material::default() }
 }
 
 /// Two triangles; `corners` counter-clockwise as seen from the front.
-pub(super) fn quad(corners: [[f32; 3]; 4], material: MaterialId) -> Primitive {
+pub(crate) fn quad(corners: [[f32; 3]; 4], material: MaterialId) -> Primitive {
     Primitive { positions: corners.to_vec(), indices: vec![0, 1, 2, 0, 2, 3], material, ..Primitive::default() }
 }
 
 /// The six faces of the box from -`half` to `half`, each with its material: -x, +x, -y, +y, -z, +z.
-pub(super) fn box_faces(half: [f32; 3], materials: [MaterialId; 6]) -> Vec<Primitive> {
+pub(crate) fn box_faces(half: [f32; 3], materials: [MaterialId; 6]) -> Vec<Primitive> {
     let face = |index: usize| {
         let (axis, sign) = (index / 2, if index.is_multiple_of(2) { -1.0 } else { 1.0 });
         let corner = |u: f32, v: f32| {
@@ -36,13 +36,13 @@ pub(super) fn box_faces(half: [f32; 3], materials: [MaterialId; 6]) -> Vec<Primi
 }
 
 /// Places a mesh of these primitives.
-pub(super) fn place(scene: &mut Scene, primitives: Vec<Primitive>, local: DAffine3) -> NodeId {
+pub(crate) fn place(scene: &mut Scene, primitives: Vec<Primitive>, local: DAffine3) -> NodeId {
     let mesh = scene.add_mesh(Mesh { name: String::new(), primitives }).expect("a sound mesh");
     scene.add_node(Node { mesh: Some(mesh), local, ..Node::default() }).expect("a sound node")
 }
 
 /// A closed box around the origin, all of one material.
-pub(super) fn closed_box(half: f32, material: Material) -> Scene {
+pub(crate) fn closed_box(half: f32, material: Material) -> Scene {
     let mut scene = Scene::empty("box");
     let id = scene.add_material(material).expect("a sound material");
     place(&mut scene, box_faces([half; 3], [id; 6]), DAffine3::IDENTITY);
@@ -50,7 +50,7 @@ pub(super) fn closed_box(half: f32, material: Material) -> Scene {
 }
 
 /// A square in the plane y = 0, seen from above as front.
-pub(super) fn floor(half: f32, material: Material) -> Scene {
+pub(crate) fn floor(half: f32, material: Material) -> Scene {
     let mut scene = Scene::empty("floor");
     let id = scene.add_material(material).expect("a sound material");
     let corners = [[-half, 0.0, -half], [-half, 0.0, half], [half, 0.0, half], [half, 0.0, -half]];
@@ -58,7 +58,7 @@ pub(super) fn floor(half: f32, material: Material) -> Scene {
     scene
 }
 
-pub(super) fn add_light(
+pub(crate) fn add_light(
     scene: &mut Scene,
     kind: LightKind,
     position: DVec3,
@@ -70,7 +70,7 @@ pub(super) fn add_light(
 }
 
 /// A perspective view with a vertical angle of 60°.
-pub(super) fn view(eye: DVec3, target: DVec3) -> CameraView {
+pub(crate) fn view(eye: DVec3, target: DVec3) -> CameraView {
     let up = if (target - eye).cross(DVec3::Y).length() < 1e-6 { DVec3::NEG_Z } else { DVec3::Y };
     CameraView::look_at(
         eye,
@@ -80,12 +80,12 @@ pub(super) fn view(eye: DVec3, target: DVec3) -> CameraView {
     )
 }
 
-pub(super) fn builtin(name: &str) -> Scene {
+pub(crate) fn builtin(name: &str) -> Scene {
     Scene::builtin(name).expect("a built-in scene").expect("it loads")
 }
 
 /// The rsm technique at its default preset with these changes.
-pub(super) fn settings(changes: &[(&str, &str)]) -> Settings {
+pub(crate) fn settings(changes: &[(&str, &str)]) -> Settings {
     let mut settings = Settings::new(Technique::Rsm, Preset::Default);
     for (key, value) in changes {
         settings.set(key, value).expect("a setting and its value");
@@ -94,13 +94,13 @@ pub(super) fn settings(changes: &[(&str, &str)]) -> Settings {
 }
 
 /// The same with virtual point lights gathered at regions.
-pub(super) fn vpl_settings(changes: &[(&str, &str)]) -> Settings {
+pub(crate) fn vpl_settings(changes: &[(&str, &str)]) -> Settings {
     let mut settings = settings(changes);
     settings.methods.diffuse = DiffuseMethod::Vpl;
     settings
 }
 
 /// The image and these slots.
-pub(super) fn request(size: [u32; 2], camera: CameraView, slots: &[Slot]) -> FrameRequest {
+pub(crate) fn request(size: [u32; 2], camera: CameraView, slots: &[Slot]) -> FrameRequest {
     FrameRequest { slots: slots.to_vec(), ..FrameRequest::new(size, camera) }
 }

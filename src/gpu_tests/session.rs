@@ -13,12 +13,12 @@ const DEVICE: &str = "IRRADIA_TEST_DEVICE";
 
 /// A device. When it goes, after everything made on it, the test fails if the validation layer said anything or if
 /// memory is still held.
-pub(super) struct Session {
-    pub(super) context: Context,
+pub(crate) struct Session {
+    pub(crate) context: Context,
 }
 
 impl Session {
-    pub(super) fn open() -> Session {
+    pub(crate) fn open() -> Session {
         let validation = match std::env::var(VALIDATION).as_deref() {
             Err(_) | Ok("sync") => Validation::Synchronization,
             Ok("core") => Validation::Core,
@@ -36,16 +36,16 @@ impl Session {
         Session { context }
     }
 
-    pub(super) fn renderer(&self, settings: &Settings) -> Renderer {
+    pub(crate) fn renderer(&self, settings: &Settings) -> Renderer {
         Renderer::new(&self.context, settings.clone()).expect("a renderer")
     }
 
-    pub(super) fn store(&self) -> Store {
+    pub(crate) fn store(&self) -> Store {
         Store::new(self.context.shared_device()).expect("a store")
     }
 
     /// A frame by a renderer that made none before.
-    pub(super) fn render(&self, scene: &Scene, settings: &Settings, request: &FrameRequest) -> Frame {
+    pub(crate) fn render(&self, scene: &Scene, settings: &Settings, request: &FrameRequest) -> Frame {
         self.renderer(settings).render(scene, request).expect("a frame")
     }
 }

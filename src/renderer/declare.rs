@@ -116,6 +116,7 @@ impl Shared {
             facts: &self.facts,
             geometry: &self.geometry,
             camera: &self.view.camera,
+            sky: self.view.sky,
             surface: &self.surface,
             set,
             lights,

@@ -47,12 +47,7 @@ fn views_of_tiles(set: &LightSet) -> (Vec<u32>, u32) {
     (views, columns)
 }
 
-pub(crate) fn emit(
-    cx: &mut FrameCx<'_, '_>,
-    views: &SpecularViews,
-    choice: &Choice,
-    made: Arrivals,
-) {
+pub(crate) fn emit(cx: &mut FrameCx<'_, '_>, views: &SpecularViews, choice: &Choice, made: Arrivals) {
     let (tiles, tiles_per_row) = views_of_tiles(cx.frame.set);
     let (lights, graph) = (cx.lights(), &mut *cx.graph);
     let tile_views = graph.upload("photons.tile_views", &tiles, Dependence::LIGHTS);

@@ -110,12 +110,8 @@ pub(crate) fn trace_all(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> Tr
     let landed = LandedPhotons::declare(cx.graph, choice.counts, stages, capacity * options.bounces.max(1));
     let arrivals = Arrivals::declare(cx.graph, capacity);
     let by_triangles = options.trace == PhotonTracing::Bvh;
-    let lists = (!by_triangles).then(|| {
-        lists::build(
-            cx.graph,
-            &scene_lists::ListInputs { data, geometry, camera: Some(camera), options },
-        )
-    });
+    let lists = (!by_triangles)
+        .then(|| lists::build(cx.graph, &scene_lists::ListInputs { data, geometry, camera: Some(camera), options }));
     let scene = cx.rays().filter(|_| by_triangles).map(|traced| (traced, traced.rays(cx.graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
     emit::emit(cx, &views, &choice, arrivals);

@@ -50,7 +50,6 @@ impl Method for Vpl {
     }
 }
 
-
 /// The slot, and the VPLs behind it: two texels each (glsl/lib/vpl.glsl).
 pub(crate) struct Made {
     pub(crate) diffuse: ImageRef,

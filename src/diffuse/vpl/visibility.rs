@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::ism::imperfect_shadow_maps;
 use super::options::{VplOptions, VplVisibility as Setting};
-use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::Dependence;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::method::FrameCx;
 use crate::shaders::groups::{SceneRays, VplVisibility};
 use crate::shaders::types::VplRays;
