@@ -10,6 +10,7 @@
 // θ the angle of incidence.
 
 #include "groups/geometry.glsl"
+#include "groups/landing.glsl"
 #include "photons/append.glsl"
 #include "photons/arrivals.glsl"
 #include "photons/beam.glsl"
@@ -17,19 +18,6 @@
 #include "photons/medium.glsl"
 #include "photons/surface_texel.glsl"
 #include "lib/brdf.glsl"
-
-layout(set = 0, binding = 0) uniform usamplerBuffer rays;
-layout(set = 0, binding = 1) uniform usamplerBuffer hits;
-layout(set = 0, binding = 2) uniform usamplerBuffer choice;
-layout(set = 0, binding = 3) writeonly buffer PhotonBlock { uvec4 photons[]; };
-layout(set = 0, binding = 4) writeonly buffer ArrivalBlock { uvec4 arrivals[]; };
-layout(set = 0, binding = 5) writeonly buffer SurfaceBlock { uvec4 surfaces[]; };
-layout(set = 0, binding = 6) buffer CountBlock { uint counts[]; };
-layout(set = 0, binding = 7) buffer ArrivalCountBlock { uint arrival_counts[]; };
-
-layout(set = 0, binding = 8) uniform samplerBuffer beams;
-layout(set = 0, binding = 9) writeonly buffer BeamBlock { vec4 arrival_beams[]; };
-layout(set = 0, binding = 10) writeonly buffer EllipseBlock { vec4 ellipses[]; };
 
 layout(push_constant, scalar) uniform Push {
     vec3 shift;          // from render space to that of the traced scene

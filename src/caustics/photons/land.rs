@@ -9,7 +9,7 @@ use super::options::{PhotonFootprint, PhotonOptions};
 use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
 use crate::frame::rays::TracedScene;
 use crate::method::FrameCx;
-use crate::shaders::groups::SceneRays;
+use crate::shaders::groups::{Landing, SceneRays};
 use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -26,7 +26,7 @@ pub(crate) fn land(
     lists: (&LandedPhotons, Arrivals),
 ) {
     let (landed, next) = lists;
-    let (graph, data, geometry) = (&mut *cx.graph, cx.frame.data, cx.frame.geometry);
+    let (graph, data) = (&mut *cx.graph, cx.frame.data);
     let name = format!("caustics/photons/land.{}", rays.stage);
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
@@ -45,41 +45,28 @@ pub(crate) fn land(
         },
         beams_decide: u32::from(options.footprint == PhotonFootprint::Beam),
     };
+    let landing = Landing {
+        rays: rays.rays.texels(RECORDS),
+        hits: rays.hits.texels(RECORDS),
+        choice: choice.choice.texels(WORDS),
+        photons,
+        arrivals: next.arrivals.write(),
+        surfaces: next.surfaces.write(),
+        counts: choice.counts.read_write(),
+        arrival_counts: choice.arrival_counts.read_write(),
+        beams: rays.beams.texels(FLOATS),
+        arrival_beams: next.beams.write(),
+        ellipses,
+    };
+    let geometry = cx.frame.geometry.clone();
     let pass = match scene {
-        None => graph.pass(
-            &name,
-            Land {
-                geometry: geometry.clone(),
-                rays: rays.rays.texels(RECORDS),
-                hits: rays.hits.texels(RECORDS),
-                choice: choice.choice.texels(WORDS),
-                photons,
-                arrivals: next.arrivals.write(),
-                surfaces: next.surfaces.write(),
-                beams: rays.beams.texels(FLOATS),
-                arrival_beams: next.beams.write(),
-                ellipses,
-                counts: choice.counts.read_write(),
-                arrival_counts: choice.arrival_counts.read_write(),
-                push,
-            },
-        ),
+        None => graph.pass(&name, Land { geometry, landing, push }),
         Some((_, scene_rays)) => graph.pass(
             &name,
             LandTraced {
+                geometry,
+                landing,
                 scene_rays: scene_rays.clone(),
-                geometry: geometry.clone(),
-                rays: rays.rays.texels(RECORDS),
-                hits: rays.hits.texels(RECORDS),
-                choice: choice.choice.texels(WORDS),
-                photons,
-                arrivals: next.arrivals.write(),
-                surfaces: next.surfaces.write(),
-                beams: rays.beams.texels(FLOATS),
-                arrival_beams: next.beams.write(),
-                ellipses,
-                counts: choice.counts.read_write(),
-                arrival_counts: choice.arrival_counts.read_write(),
                 push: LandTracedPush {
                     shift: push.shift,
                     stage: push.stage,
