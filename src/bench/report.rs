@@ -118,6 +118,9 @@ pub struct Run {
     pub passes: Vec<Pass>,
     /// The passes of one piece together, and those of every level within it; a piece comes before its levels.
     pub pieces: Vec<Piece>,
+    /// Pieces that were timed on their own, as they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub piece_alone: Vec<PieceAlone>,
     /// Median over the rounds of the serialised frame less the sum of its passes.
     pub unexplained_ms: f64,
     /// Device memory held by the frame's pieces and the scene.
@@ -181,6 +184,35 @@ pub struct Piece {
     pub ms: Spread,
     /// Its median over the serialised frame's median.
     pub share: f64,
+}
+
+/// A piece timed on its own: what it reads was made once, and it alone repeated. Spreads are over the repetitions, as many as rounds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PieceAlone {
+    /// The piece, a level of one, or a pass, by its full name.
+    pub piece: String,
+    /// GPU time of its passes, serialised; zeros if it was not repeated.
+    pub ms: Spread,
+    /// GPU time of the same passes within the serialised frame, over the rounds.
+    pub in_frame_ms: Spread,
+    /// GPU time of a repetition as a whole, those of `also` included, its passes overlapping as the driver likes.
+    pub whole_ms: Spread,
+    /// Its passes.
+    pub passes: Vec<PassAlone>,
+    /// Passes beyond it that had to be repeated with it, because they make what it reads and what later passes change in place. They are not part
+    /// of `ms`.
+    pub also: Vec<PassAlone>,
+    /// Why it was not repeated; null if it was.
+    pub skipped: Option<String>,
+}
+
+/// A pass of a repetition.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassAlone {
+    /// The pass by its full name.
+    pub pass: String,
+    /// GPU time, serialised.
+    pub ms: Spread,
 }
 
 /// What a run's image was compared with.

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::report::{Pass, Piece, Run};
+use super::report::{Pass, Piece, PieceAlone, Run};
 use super::statistics::Spread;
 use super::units;
 
@@ -16,6 +16,8 @@ pub enum RowKind {
     Level,
     /// One pass.
     Pass,
+    /// A piece timed on its own.
+    Alone,
     /// The frame as a whole, or what belongs to no pass.
     Frame,
 }
@@ -27,6 +29,7 @@ impl RowKind {
             RowKind::Piece => "piece",
             RowKind::Level => "level",
             RowKind::Pass => "pass",
+            RowKind::Alone => "alone",
             RowKind::Frame => "frame",
         }
     }
@@ -115,6 +118,7 @@ pub fn rows(run: &Run) -> Vec<Row> {
         "nothing changed since the last; {} ms on the host",
         units::milliseconds(run.unchanged_host_ms.median)
     )));
+    rows.extend(run.piece_alone.iter().map(alone_row));
     let first = units::milliseconds(run.first_frame_ms);
     let (upload, pipelines) = (units::milliseconds(run.upload_ms), units::milliseconds(run.pipeline_ms));
     let compile = format!("first frame {first} ms on the host, of it upload {upload} ms, pipelines {pipelines} ms");
@@ -171,6 +175,21 @@ fn pass_row(pass: &Pass) -> Row {
         Some(reason) => Row { skipped: true, ..row.text(reason) },
         None => row.spread(pass.ms).share(pass.share).text(work(pass)),
     }
+}
+
+fn alone_row(alone: &PieceAlone) -> Row {
+    let row = Row::new(RowKind::Alone, format!("{} alone", alone.piece));
+    if let Some(reason) = &alone.skipped {
+        return Row { skipped: true, ..row.text(reason) };
+    }
+    let [in_frame, whole] = [alone.in_frame_ms, alone.whole_ms].map(|ms| units::milliseconds(ms.median));
+    let mut text = format!("{in_frame} ms within the serialised frame; {whole} ms if its passes overlap");
+    if !alone.also.is_empty() {
+        let names: Vec<&str> = alone.also.iter().map(|row| row.pass.as_str()).collect();
+        let ms = units::milliseconds(alone.also.iter().map(|row| row.ms.median).sum());
+        text += &format!(", {ms} ms of them more: interleaves with {}, repeated with it", names.join(", "));
+    }
+    row.spread(alone.ms).text(text)
 }
 
 fn work(pass: &Pass) -> String {

@@ -152,7 +152,7 @@ impl Samples {
             let mut within: Option<String> = None;
             for piece in levels(&pass.piece, &pass.pass) {
                 if pieces.iter().all(|known| known.piece != piece) {
-                    let ms = spread(&self.rounds_of(&piece));
+                    let ms = self.piece_ms(&piece);
                     let outer = |known: &Piece| within.as_ref().is_some_and(|outer| lies_in(&known.piece, outer));
                     let place = pieces.iter().rposition(outer).map_or(pieces.len(), |last| last + 1);
                     pieces.insert(place, Piece { piece: piece.clone(), within, ms, share: share(ms) });
@@ -161,6 +161,11 @@ impl Samples {
             }
         }
         pieces
+    }
+
+    /// What the passes of a piece or level take within the frame.
+    pub(crate) fn piece_ms(&self, piece: &str) -> Spread {
+        spread(&self.rounds_of(piece))
     }
 
     /// The sum of the passes that lie in a piece or level, round by round.
