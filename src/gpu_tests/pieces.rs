@@ -60,7 +60,7 @@ fn a_piece_runs_alone_and_leaves_the_picture_as_it_was() {
 fn a_piece_that_interleaves_with_others_is_repeated_with_them() {
     let session = Session::open();
     let scene = builtin("ring");
-    let piece = "caustics/photons/land.0";
+    let piece = "caustics/photons/trace/land.0";
     let mut renderer = session.renderer(&hybrid());
     let rounds = renderer.repeat_piece(&scene, &asked(&scene), piece, 2).expect("it can be repeated");
     let names = rounds.iter().map(|round| ran(&round.passes)).collect::<Vec<_>>();
