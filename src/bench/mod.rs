@@ -3,10 +3,13 @@
 //! ```text
 //! run ──▶ samples ──▶ report ──▶ rows ──▶ text · markdown · csv
 //!  │      (one technique's frames) ▲ (JSON)  (what a table says)
+//!  ├────▶ alone ──────────────────┤
+//!  │      (pieces on their own)    │
 //!  └────▶ errors ─────────────────┘
 //!         (against references)
 //! ```
 
+mod alone;
 pub mod comparison;
 mod error_rows;
 mod errors;

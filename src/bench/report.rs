@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::statistics::Spread;
+use crate::graph::{joined, lies_in};
 pub use crate::metrics::ImageErrors;
 use crate::renderer::{DeviceReport, Slot};
 
@@ -115,15 +116,18 @@ pub struct Run {
     pub load_ms: f64,
     /// The passes in their order, the skipped ones included; those of the same name are one entry.
     pub passes: Vec<Pass>,
-    /// The passes of one piece together.
+    /// The passes of one piece together, and those of every level within it; a piece comes before its levels.
     pub pieces: Vec<Piece>,
+    /// Pieces that were timed on their own, as they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub piece_alone: Vec<PieceAlone>,
     /// Median over the rounds of the serialised frame less the sum of its passes.
     pub unexplained_ms: f64,
     /// Device memory held by the frame's pieces and the scene.
     pub memory_bytes: u64,
     /// The same by piece; `scene` is the scene itself.
     pub memory: BTreeMap<String, u64>,
-    /// All work counters of one frame, by `piece/pass.name`.
+    /// All work counters of one frame, by the pass's full name and their own: `piece/pass.name`.
     pub counts: BTreeMap<String, u64>,
     /// What the image was compared with; null if it was not.
     pub reference: Option<Reference>,
@@ -144,7 +148,7 @@ pub struct Run {
 pub struct Pass {
     /// The piece that it belongs to.
     pub piece: String,
-    /// The pass within its piece.
+    /// The pass within its piece, in levels: `lists/clear`; empty for a piece that is skipped as a whole.
     pub pass: String,
     /// GPU time, serialised; zeros for a skipped pass.
     pub ms: Spread,
@@ -156,15 +160,59 @@ pub struct Pass {
     pub work: BTreeMap<String, u64>,
 }
 
-/// One piece of a run: its passes together.
+impl Pass {
+    /// The names of its piece and its own.
+    pub fn full_name(&self) -> String {
+        joined(&self.piece, &self.pass)
+    }
+
+    /// Whether it is part of `piece`: a piece, a level of one, or a pass by its full name.
+    pub fn lies_in(&self, piece: &str) -> bool {
+        lies_in(&self.full_name(), piece)
+    }
+}
+
+/// One piece of a run, or a level of one: its passes together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Piece {
-    /// The piece.
+    /// The piece, or the level by its full name: `caustics/photons`, `caustics/photons/lists`.
     pub piece: String,
+    /// The piece or level that this level is part of; null for a piece. The pieces add up to the frame, levels to parts of their piece.
+    #[serde(default)]
+    pub within: Option<String>,
     /// Spread of the sum of its passes.
     pub ms: Spread,
     /// Its median over the serialised frame's median.
     pub share: f64,
+}
+
+/// A piece timed on its own: what it reads was made once, and it alone repeated. Spreads are over the repetitions, as many as rounds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PieceAlone {
+    /// The piece, a level of one, or a pass, by its full name.
+    pub piece: String,
+    /// GPU time of its passes, serialised; zeros if it was not repeated.
+    pub ms: Spread,
+    /// GPU time of the same passes within the serialised frame, over the rounds.
+    pub in_frame_ms: Spread,
+    /// GPU time of a repetition as a whole, those of `also` included, its passes overlapping as the driver likes.
+    pub whole_ms: Spread,
+    /// Its passes.
+    pub passes: Vec<PassAlone>,
+    /// Passes beyond it that had to be repeated with it, because they make what it reads and what later passes change in place. They are not part
+    /// of `ms`.
+    pub also: Vec<PassAlone>,
+    /// Why it was not repeated; null if it was.
+    pub skipped: Option<String>,
+}
+
+/// A pass of a repetition.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassAlone {
+    /// The pass by its full name.
+    pub pass: String,
+    /// GPU time, serialised.
+    pub ms: Spread,
 }
 
 /// What a run's image was compared with.

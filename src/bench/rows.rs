@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::report::{Pass, Run};
+use super::report::{Pass, Piece, PieceAlone, Run};
 use super::statistics::Spread;
 use super::units;
 
@@ -12,10 +12,12 @@ use super::units;
 pub enum RowKind {
     /// Several passes together.
     Piece,
-    /// One pass, indented below its piece.
-    PassOfPiece,
-    /// The only pass of its piece.
+    /// Some passes of a piece together; part of the piece's own row.
+    Level,
+    /// One pass.
     Pass,
+    /// A piece timed on its own.
+    Alone,
     /// The frame as a whole, or what belongs to no pass.
     Frame,
 }
@@ -25,7 +27,9 @@ impl RowKind {
     pub fn name(self) -> &'static str {
         match self {
             RowKind::Piece => "piece",
-            RowKind::Pass | RowKind::PassOfPiece => "pass",
+            RowKind::Level => "level",
+            RowKind::Pass => "pass",
+            RowKind::Alone => "alone",
             RowKind::Frame => "frame",
         }
     }
@@ -38,6 +42,8 @@ pub struct Row {
     pub kind: RowKind,
     /// Its full name: `piece`, `piece/pass`, or words such as `unchanged frame`.
     pub name: String,
+    /// The rows above that it is part of: names of a piece and of levels, from the outermost.
+    pub within: Vec<String>,
     /// The median, milliseconds, or the only measurement.
     pub ms: Option<f64>,
     /// The least and the 95th percentile, milliseconds.
@@ -52,7 +58,8 @@ pub struct Row {
 
 impl Row {
     fn new(kind: RowKind, name: impl Into<String>) -> Row {
-        Row { kind, name: name.into(), ms: None, range_ms: None, share: None, skipped: false, text: String::new() }
+        let (within, text) = Default::default();
+        Row { kind, name: name.into(), within, ms: None, range_ms: None, share: None, skipped: false, text }
     }
 
     fn frame(name: &str) -> Row {
@@ -71,12 +78,14 @@ impl Row {
         Row { text: text.into(), ..self }
     }
 
-    /// The name for people: a pass below its piece does not repeat the piece.
+    fn within(self, within: &[String]) -> Row {
+        Row { within: within.to_vec(), ..self }
+    }
+
+    /// The name for people: indented below what it is part of, without repeating it.
     pub fn label(&self) -> String {
-        match (self.kind, self.name.split_once('/')) {
-            (RowKind::PassOfPiece, Some((_, pass))) => format!("  {pass}"),
-            _ => self.name.clone(),
-        }
+        let own = self.within.last().and_then(|outer| self.name.strip_prefix(outer)).unwrap_or(&self.name);
+        "  ".repeat(self.within.len()) + own.trim_start_matches('/')
     }
 
     /// The cells after the label: median, least and 95th percentile in milliseconds, share, text.
@@ -91,16 +100,11 @@ impl Row {
 /// The header of the rows of [`rows`].
 pub const HEADER: [&str; 6] = ["pass", "ms", "min", "p95", "share", "work"];
 
-/// All rows of a run: its passes by piece, then the frame as a whole.
+/// All rows of a run: its passes by piece and level, then the frame as a whole.
 pub fn rows(run: &Run) -> Vec<Row> {
     let mut rows = Vec::new();
-    for piece in &run.pieces {
-        let passes: Vec<&Pass> = run.passes.iter().filter(|pass| pass.piece == piece.piece).collect();
-        if passes.len() > 1 {
-            rows.push(Row::new(RowKind::Piece, &piece.piece).spread(piece.ms).share(piece.share));
-        }
-        let kind = if passes.len() > 1 { RowKind::PassOfPiece } else { RowKind::Pass };
-        rows.extend(passes.into_iter().map(|pass| pass_row(kind, pass)));
+    for piece in run.pieces.iter().filter(|piece| piece.within.is_none()) {
+        add_piece(run, piece, &mut Vec::new(), &mut rows);
     }
     let unexplained_share = run.unexplained_ms / run.serialised_ms.median;
     let unexplained = Row { ms: Some(run.unexplained_ms), ..Row::frame("unexplained") };
@@ -114,6 +118,7 @@ pub fn rows(run: &Run) -> Vec<Row> {
         "nothing changed since the last; {} ms on the host",
         units::milliseconds(run.unchanged_host_ms.median)
     )));
+    rows.extend(run.piece_alone.iter().map(alone_row));
     let first = units::milliseconds(run.first_frame_ms);
     let (upload, pipelines) = (units::milliseconds(run.upload_ms), units::milliseconds(run.pipeline_ms));
     let compile = format!("first frame {first} ms on the host, of it upload {upload} ms, pipelines {pipelines} ms");
@@ -121,6 +126,32 @@ pub fn rows(run: &Run) -> Vec<Row> {
     rows.push(Row::frame("memory").text(memory(run)));
     rows.push(Row::frame("settings").text(settings(run)));
     rows
+}
+
+/// A piece or level, then what it holds in the order of the passes; of one that holds a single pass that pass alone. `within` are the rows above.
+fn add_piece(run: &Run, piece: &Piece, within: &mut Vec<String>, rows: &mut Vec<Row>) {
+    let passes: Vec<&Pass> = run.passes.iter().filter(|pass| pass.lies_in(&piece.piece)).collect();
+    let has_row = passes.len() > 1;
+    if has_row {
+        let kind = if piece.within.is_none() { RowKind::Piece } else { RowKind::Level };
+        rows.push(Row::new(kind, &piece.piece).within(within).spread(piece.ms).share(piece.share));
+        within.push(piece.piece.clone());
+    }
+    let levels: Vec<&Piece> = run.pieces.iter().filter(|level| level.within.as_ref() == Some(&piece.piece)).collect();
+    let mut shown: Vec<&str> = Vec::new();
+    for pass in passes {
+        match levels.iter().find(|level| pass.lies_in(&level.piece)) {
+            Some(level) if shown.contains(&&*level.piece) => {}
+            Some(level) => {
+                shown.push(&level.piece);
+                add_piece(run, level, within, rows);
+            }
+            None => rows.push(pass_row(pass).within(within)),
+        }
+    }
+    if has_row {
+        within.pop();
+    }
 }
 
 /// The technique and its preset: `rsm (default)`.
@@ -138,12 +169,27 @@ pub fn caption(run: &Run) -> String {
     )
 }
 
-fn pass_row(kind: RowKind, pass: &Pass) -> Row {
-    let row = Row::new(kind, format!("{}/{}", pass.piece, pass.pass));
+fn pass_row(pass: &Pass) -> Row {
+    let row = Row::new(RowKind::Pass, pass.full_name());
     match &pass.skipped {
         Some(reason) => Row { skipped: true, ..row.text(reason) },
         None => row.spread(pass.ms).share(pass.share).text(work(pass)),
     }
+}
+
+fn alone_row(alone: &PieceAlone) -> Row {
+    let row = Row::new(RowKind::Alone, format!("{} alone", alone.piece));
+    if let Some(reason) = &alone.skipped {
+        return Row { skipped: true, ..row.text(reason) };
+    }
+    let [in_frame, whole] = [alone.in_frame_ms, alone.whole_ms].map(|ms| units::milliseconds(ms.median));
+    let mut text = format!("{in_frame} ms within the serialised frame; {whole} ms if its passes overlap");
+    if !alone.also.is_empty() {
+        let names: Vec<&str> = alone.also.iter().map(|row| row.pass.as_str()).collect();
+        let ms = units::milliseconds(alone.also.iter().map(|row| row.ms.median).sum());
+        text += &format!(", {ms} ms of them more: interleaves with {}, repeated with it", names.join(", "));
+    }
+    row.spread(alone.ms).text(text)
 }
 
 fn work(pass: &Pass) -> String {
@@ -183,7 +229,7 @@ mod tests {
     fn passes_come_by_piece_and_the_frame_last() {
         let rows = rows(&example_run());
         let labels: Vec<String> = rows.iter().map(Row::label).collect();
-        let passes = ["gbuffer/draw", "light-views", "  draw", "  reduce", "rsm/gather", "caustics/splat"];
+        let passes = ["gbuffer/draw", "light-views", "  draw", "  reduce", "rsm/gather", "caustics/photons"];
         let frame = ["unexplained", "serialised frame", "frame", "unchanged frame", "compile", "memory", "settings"];
         assert_eq!(labels, [&passes[..], &frame[..]].concat());
         assert_eq!(rows[0].cells(), ["4.500", "4.000", "5.000", "22.0 %", "262 k triangles"]);
@@ -192,6 +238,40 @@ mod tests {
         assert_eq!(rows[6].cells(), ["0.500", "", "", "2.4 %", ""]);
         assert_eq!(rows[11].text, "100 MiB: scene 80.0 MiB, gbuffer 20.0 MiB");
         assert!(rows[12].text.contains("rsm.vpls=256"), "{}", rows[12].text);
+    }
+
+    #[test]
+    fn levels_stand_below_their_piece_and_passes_below_their_level() {
+        let pass = |pass: &str| Pass { piece: "caustics/photons".to_owned(), pass: pass.to_owned(), ..Pass::default() };
+        let piece = |name: &str, within: Option<&str>| Piece {
+            piece: name.to_owned(),
+            within: within.map(str::to_owned),
+            ..Piece::default()
+        };
+        let photons = Some("caustics/photons");
+        let run = Run {
+            passes: ["lists/clear", "trace/emit", "lists/draw", "clear", "splat/sort"].map(pass).to_vec(),
+            pieces: vec![
+                piece("caustics/photons", None),
+                piece("caustics/photons/lists", photons),
+                piece("caustics/photons/trace", photons),
+                piece("caustics/photons/splat", photons),
+            ],
+            ..Run::default()
+        };
+        let rows = rows(&run);
+        let labels: Vec<(&str, String)> = rows.iter().map(|row| (row.kind.name(), row.label())).collect();
+        let expected = [
+            ("piece", "caustics/photons"),
+            ("level", "  lists"),
+            ("pass", "    clear"),
+            ("pass", "    draw"),
+            ("pass", "  trace/emit"),
+            ("pass", "  clear"),
+            ("pass", "  splat/sort"),
+        ];
+        assert_eq!(labels[..7], expected.map(|(kind, label)| (kind, label.to_owned())));
+        assert_eq!(rows[2].name, "caustics/photons/lists/clear");
     }
 
     #[test]

@@ -3,9 +3,13 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use super::report::{Failure, Run};
+use super::alone::{not_repeated, repeated};
+use super::report::{Failure, PieceAlone, Run};
 use super::samples::Samples;
-use crate::renderer::{ColorImage, Context, Frame, FrameRequest, Renderer, Settings, Slot, Timing, ToneMap};
+use crate::renderer::{
+    ColorImage, Context, Frame, FrameRequest, PassTiming, Renderer, RepeatError, Settings, Slot, Timing, ToneMap,
+    check_piece,
+};
 use crate::scene::{CameraView, Scene};
 
 /// How the contenders' pictures are tone-mapped.
@@ -40,12 +44,14 @@ pub struct Options {
     pub pictures: bool,
     /// Whether the slots that a contender fills are wanted as images, made after the rounds.
     pub slots: bool,
+    /// Pieces to be timed on their own after the rounds, by their full names: pieces, levels, or passes.
+    pub pieces: Vec<String>,
 }
 
 impl Options {
-    /// The frames that one contender renders for its timings.
+    /// How often one contender reports progress: for each frame of its timings, and for each piece.
     pub fn frames_per_contender(&self) -> u64 {
-        1 + u64::from(self.warmup) + 3 * u64::from(self.frames)
+        1 + u64::from(self.warmup) + 3 * u64::from(self.frames) + self.pieces.len() as u64
     }
 
     /// Whether a contender that has rendered for so long has had its time.
@@ -81,6 +87,8 @@ type Outcome = Result<Finished, Failure>;
 struct Contender {
     settings: Settings,
     state: Result<(Renderer, Samples), String>,
+    /// The passes of its first frame.
+    passes: Vec<PassTiming>,
     /// Host time of all its frames.
     rendered: Duration,
 }
@@ -92,7 +100,8 @@ struct Contender {
 /// 2. a frame made anew, timed pass by pass;
 /// 3. a frame in which nothing has changed, timed as a whole.
 ///
-/// No image is read back in these. `progress` is called after every frame. A contender that fails does not stop the others.
+/// No image is read back in these. Then pieces are repeated on their own, as often as there are rounds. `progress` is called after every frame and
+/// every piece. A contender that fails does not stop the others; a piece that none of them has fails them all.
 pub fn run(
     context: &Context,
     subject: &Subject<'_>,
@@ -102,14 +111,36 @@ pub fn run(
 ) -> Vec<Outcome> {
     let mut contenders: Vec<Contender> = contenders.iter().map(|settings| Contender::new(context, settings)).collect();
     for contender in &mut contenders {
-        contender.proceed(|renderer, samples| warm_up(renderer, samples, subject, options, progress));
+        let mut passes = Vec::new();
+        contender.proceed(|renderer, samples| {
+            passes = warm_up(renderer, samples, subject, options, progress)?;
+            Ok(())
+        });
+        contender.passes = passes;
+    }
+    for piece in &options.pieces {
+        refuse_unknown(piece, &mut contenders);
     }
     for index in 0..options.frames {
         for contender in contenders.iter_mut().filter(|contender| index == 0 || !options.over(contender.rendered)) {
             contender.proceed(|renderer, samples| round(renderer, samples, subject, options, progress));
         }
     }
-    contenders.into_iter().map(|contender| contender.finish(subject, options)).collect()
+    contenders.into_iter().map(|contender| contender.finish(subject, options, progress)).collect()
+}
+
+/// Stops all contenders that run if none of them has the piece.
+fn refuse_unknown(piece: &str, contenders: &mut [Contender]) {
+    let lacks = |contender: &Contender| match check_piece(&contender.passes, piece) {
+        Err(error @ RepeatError::Unknown { .. }) => Some(error.to_string()),
+        _ => None,
+    };
+    let running: Vec<&mut Contender> = contenders.iter_mut().filter(|contender| contender.state.is_ok()).collect();
+    if running.iter().all(|contender| lacks(contender).is_some()) {
+        for contender in running {
+            contender.state = Err(lacks(contender).unwrap_or_default());
+        }
+    }
 }
 
 /// Why a contender dropped out, as a sentence.
@@ -119,7 +150,7 @@ impl Contender {
     fn new(context: &Context, settings: &Settings) -> Contender {
         let renderer = Renderer::new(context, settings.clone());
         let state = renderer.map(|renderer| (renderer, Samples::default())).map_err(|error| sentence(&error));
-        Contender { settings: settings.clone(), state, rendered: Duration::ZERO }
+        Contender { settings: settings.clone(), state, passes: Vec::new(), rendered: Duration::ZERO }
     }
 
     /// Renders on unless the contender has failed before.
@@ -132,7 +163,7 @@ impl Contender {
         self.rendered += start.elapsed();
     }
 
-    fn finish(self, subject: &Subject<'_>, options: &Options) -> Outcome {
+    fn finish(self, subject: &Subject<'_>, options: &Options, progress: &mut dyn FnMut()) -> Outcome {
         let settings = &self.settings;
         let failure = |error: String| Failure {
             scene: subject.name.to_owned(),
@@ -141,6 +172,12 @@ impl Contender {
             error,
         };
         let (mut renderer, samples) = self.state.map_err(failure)?;
+        let mut piece_alone = Vec::new();
+        for piece in &options.pieces {
+            let alone = alone(&mut renderer, &samples, subject, options, piece);
+            piece_alone.push(alone.map_err(|error| failure(sentence(&error)))?);
+            progress();
+        }
         let (picture, images) = if options.pictures || options.slots {
             let filled = Slot::ALL.into_iter().filter(|slot| options.slots && settings.methods.fills(*slot));
             let request = FrameRequest {
@@ -166,22 +203,41 @@ impl Contender {
             size: options.size,
             warmup: options.warmup,
             load_ms: subject.load_ms,
+            piece_alone,
             ..Run::default()
         });
         Ok(Finished { run, picture, images })
     }
 }
 
-/// The first frame, and the frames of warm-up; these in turn as they come in a round.
+/// A piece on its own.
+fn alone(
+    renderer: &mut Renderer,
+    samples: &Samples,
+    subject: &Subject<'_>,
+    options: &Options,
+    piece: &str,
+) -> Result<PieceAlone, RepeatError> {
+    let request = request(subject, options, Timing::Passes);
+    match renderer.repeat_piece(subject.scene, &request, piece, options.frames) {
+        Ok(repetitions) => Ok(repeated(piece, &repetitions, samples.piece_ms(piece))),
+        Err(RepeatError::Frame(error)) => Err(error.into()),
+        Err(RepeatError::Skipped { reason, .. }) => Ok(not_repeated(piece, &reason)),
+        Err(error) => Ok(not_repeated(piece, &error.to_string())),
+    }
+}
+
+/// The first frame, whose passes it returns, and the frames of warm-up; these in turn as they come in a round.
 fn warm_up(
     renderer: &mut Renderer,
     samples: &mut Samples,
     subject: &Subject<'_>,
     options: &Options,
     progress: &mut dyn FnMut(),
-) -> Result<(), Stopped> {
+) -> Result<Vec<PassTiming>, Stopped> {
     let start = Instant::now();
-    samples.add_first(&render(renderer, subject, options, Timing::Frame, progress)?.timings);
+    let first = render(renderer, subject, options, Timing::Frame, progress)?.timings;
+    samples.add_first(&first);
     for index in 0..options.warmup {
         if options.over(start.elapsed()) {
             break;
@@ -190,7 +246,7 @@ fn warm_up(
         let timing = if index % 2 == 0 { Timing::Passes } else { Timing::Frame };
         samples.add_warmup(&render(renderer, subject, options, timing, progress)?.timings);
     }
-    Ok(())
+    Ok(first.passes)
 }
 
 fn round(

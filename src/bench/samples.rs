@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::report::{Pass, Piece, Run};
 use super::statistics::{Spread, median};
+use crate::graph::{joined, levels, lies_in};
 use crate::renderer::FrameTimings;
 
 /// The measurements of one technique on one scene.
@@ -41,12 +42,9 @@ struct PassSamples {
 /// A pass ran but the device gave no times for it.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "the device gave no time for the pass {piece}/{pass}, and the bench has nothing to say without; choose another with --device"
+    "the device gave no time for the pass {0}, and the bench has nothing to say without; choose another with --device"
 )]
-pub(crate) struct Untimed {
-    piece: String,
-    pass: String,
-}
+pub(crate) struct Untimed(String);
 
 impl Samples {
     /// The very first frame, which holds the driver's compilation.
@@ -93,9 +91,7 @@ impl Samples {
                 pass.reason = Some(reason.clone());
                 continue;
             }
-            let Some(ms) = timing.ms else {
-                return Err(Untimed { piece: timing.piece.clone(), pass: timing.pass.clone() });
-            };
+            let Some(ms) = timing.ms else { return Err(Untimed(timing.full_name())) };
             pass.ran = true;
             pass.ms[round] += ms;
             explained += ms;
@@ -125,9 +121,9 @@ impl Samples {
         let serialised_ms = spread(&self.serialised_ms);
         let share = |ms: Spread| if serialised_ms.median > 0.0 { ms.median / serialised_ms.median } else { 0.0 };
         let passes: Vec<Pass> = self.passes.iter().map(|pass| pass.finish(share)).collect();
-        let counts = passes.iter().flat_map(|pass| {
-            pass.work.iter().map(|(name, count)| (format!("{}/{}.{name}", pass.piece, pass.pass), *count))
-        });
+        let counts = passes
+            .iter()
+            .flat_map(|pass| pass.work.iter().map(|(name, count)| (format!("{}.{name}", pass.full_name()), *count)));
         Run {
             frames: self.serialised_ms.len() as u32,
             frame_ms: spread(&self.frame_ms),
@@ -149,20 +145,36 @@ impl Samples {
         }
     }
 
-    /// The pieces in the order of their first pass; the sum of their passes round by round.
+    /// The pieces and their levels in the order of their first pass, a piece before its levels.
     fn pieces(&self, share: impl Fn(Spread) -> f64) -> Vec<Piece> {
-        let mut sums: Vec<(&str, Vec<f64>)> = Vec::new();
+        let mut pieces: Vec<Piece> = Vec::new();
         for pass in &self.passes {
-            match sums.iter_mut().find(|(piece, _)| *piece == pass.piece) {
-                Some((_, sum)) => sum.iter_mut().zip(&pass.ms).for_each(|(sum, ms)| *sum += ms),
-                None => sums.push((&pass.piece, pass.ms.clone())),
+            let mut within: Option<String> = None;
+            for piece in levels(&pass.piece, &pass.pass) {
+                if pieces.iter().all(|known| known.piece != piece) {
+                    let ms = self.piece_ms(&piece);
+                    let outer = |known: &Piece| within.as_ref().is_some_and(|outer| lies_in(&known.piece, outer));
+                    let place = pieces.iter().rposition(outer).map_or(pieces.len(), |last| last + 1);
+                    pieces.insert(place, Piece { piece: piece.clone(), within, ms, share: share(ms) });
+                }
+                within = Some(piece);
             }
         }
-        let piece = |(piece, ms): (&str, Vec<f64>)| {
-            let ms = spread(&ms);
-            Piece { piece: piece.to_owned(), ms, share: share(ms) }
-        };
-        sums.into_iter().map(piece).collect()
+        pieces
+    }
+
+    /// What the passes of a piece or level take within the frame.
+    pub(crate) fn piece_ms(&self, piece: &str) -> Spread {
+        spread(&self.rounds_of(piece))
+    }
+
+    /// The sum of the passes that lie in a piece or level, round by round.
+    fn rounds_of(&self, piece: &str) -> Vec<f64> {
+        let mut sums = vec![0.0; self.serialised_ms.len()];
+        for pass in self.passes.iter().filter(|pass| lies_in(&joined(&pass.piece, &pass.pass), piece)) {
+            sums.iter_mut().zip(&pass.ms).for_each(|(sum, ms)| *sum += ms);
+        }
+        sums
     }
 }
 
@@ -210,7 +222,7 @@ pub(crate) mod tests {
                 pass("light-views", "draw", 3.0, &[("triangles", 500)]),
                 pass("light-views", "reduce", 1.0, &[]),
                 pass("rsm", "gather", 9.5, &[("vpls", 1_200_000_000), ("invocations", 786_432)]),
-                skipped("caustics", "splat", "no specular surface"),
+                skipped("caustics/photons", "", "no specular surface"),
             ];
             samples.add_passes(&frame(20.0 + slower, passes)).expect("all timed");
             samples.add_unchanged(&frame(0.25, Vec::new()));
@@ -244,13 +256,52 @@ pub(crate) mod tests {
         assert_eq!(run.serialised_ms, Spread { min: 20.0, median: 20.5, p95: 21.0 });
         assert_eq!(run.unchanged_ms.median, 0.25);
         assert_eq!(run.unexplained_ms, 0.5);
-        let names: Vec<String> = run.passes.iter().map(|pass| format!("{}/{}", pass.piece, pass.pass)).collect();
-        assert_eq!(names, ["gbuffer/draw", "light-views/draw", "light-views/reduce", "rsm/gather", "caustics/splat"]);
+        let names: Vec<String> = run.passes.iter().map(Pass::full_name).collect();
+        assert_eq!(names, ["gbuffer/draw", "light-views/draw", "light-views/reduce", "rsm/gather", "caustics/photons"]);
         assert_eq!(run.passes[1].ms, Spread { min: 5.0, median: 5.0, p95: 5.0 });
         assert!((run.passes[3].share - 9.5 / 20.5).abs() < 1e-12);
         assert_eq!(run.pieces[1].piece, "light-views");
         assert_eq!(run.pieces[1].ms.median, 6.0);
         assert_eq!(run.memory_bytes, 100 << 20);
+    }
+
+    /// Two rounds of a piece with two levels whose passes take turns, and a pass without a level.
+    #[test]
+    fn levels_are_added_up_round_by_round_and_counted_once() {
+        let mut samples = Samples::default();
+        for [march, land] in [[3.0, 1.0], [1.0, 5.0]] {
+            let passes = vec![
+                pass("gbuffer", "draw", 1.0, &[]),
+                pass("caustics/photons", "lists/clear", 0.5, &[]),
+                pass("caustics/photons", "trace/march.0", march, &[]),
+                pass("caustics/photons", "lists/draw", 0.25, &[]),
+                skipped("caustics/photons", "lists/draw-masked", "no surface cut out by its alpha"),
+                pass("caustics/photons", "trace/land/first", land, &[]),
+                pass("caustics/photons", "clear", 2.0, &[]),
+                pass("compose", "image", 0.5, &[]),
+            ];
+            samples.add_passes(&frame(5.0 + march + land, passes)).expect("all timed");
+        }
+        let run = samples.finish(Run::default());
+        let pieces: Vec<_> = run
+            .pieces
+            .iter()
+            .map(|piece| (&*piece.piece, piece.within.as_deref(), piece.ms.min, piece.ms.p95))
+            .collect();
+        let photons = Some("caustics/photons");
+        assert_eq!(
+            pieces,
+            [
+                ("gbuffer", None, 1.0, 1.0),
+                ("caustics/photons", None, 6.75, 8.75),
+                ("caustics/photons/lists", photons, 0.75, 0.75),
+                ("caustics/photons/trace", photons, 4.0, 6.0),
+                ("caustics/photons/trace/land", Some("caustics/photons/trace"), 1.0, 5.0),
+                ("compose", None, 0.5, 0.5),
+            ]
+        );
+        let whole: f64 = run.pieces.iter().filter(|piece| piece.within.is_none()).map(|piece| piece.ms.median).sum();
+        assert_eq!(whole + run.unexplained_ms, run.serialised_ms.median);
     }
 
     #[test]

@@ -39,6 +39,9 @@ pub(crate) struct BenchArgs {
     /// Frames of each technique before the rounds, after its first, which is timed apart
     #[arg(long, value_name = "N", default_value_t = 2)]
     warmup: u32,
+    /// Also time a piece on its own, such as caustics/photons/lists: its inputs are made once, it alone is repeated; may be given again
+    #[arg(long, value_name = "PIECE")]
+    piece: Vec<String>,
     /// Samples per pixel of references by path tracing, to say how far each technique is from them
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..))]
     reference: Option<u32>,
@@ -122,7 +125,8 @@ impl Bench<'_> {
         }
         let pictures = args.images.is_some();
         let (size, frames, warmup) = (args.scene_args.size, args.frames, args.warmup);
-        let options = Options { size, frames, warmup, max_seconds: None, pictures, slots: args.reference.is_some() };
+        let (pieces, slots) = (args.piece.clone(), args.reference.is_some());
+        let options = Options { size, frames, warmup, max_seconds: None, pictures, slots, pieces };
         let cache = args.reference.map_or(Ok(None), |_| reference::open_cache(args.no_cache))?;
         let context = invocation.context()?;
         if let Some(folder) = &args.images {

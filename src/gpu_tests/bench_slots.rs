@@ -13,7 +13,9 @@ fn contenders_give_the_slots_that_they_fill_and_these_add_up() {
     let camera = scene.camera_view(None).expect("it has a camera");
     let subject = Subject { name: "box", scene: &scene, camera: &camera, load_ms: 0.0 };
     let contenders = [Technique::Direct, Technique::Rsm].map(|technique| Settings::new(technique, Preset::Draft));
-    let options = Options { size: [32, 24], frames: 1, warmup: 0, max_seconds: None, pictures: false, slots: true };
+    let pieces = Vec::new();
+    let options =
+        Options { size: [32, 24], frames: 1, warmup: 0, max_seconds: None, pictures: false, slots: true, pieces };
     let outcomes = run(&session.context, &subject, &contenders, &options, &mut || ());
     for (outcome, settings) in outcomes.into_iter().zip(&contenders) {
         let images = outcome.expect("it came through").images.expect("they were wanted");

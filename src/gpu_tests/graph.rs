@@ -19,8 +19,7 @@ fn floats(bytes: &[u8]) -> Vec<f32> {
 }
 
 fn row<'t>(passes: &'t [PassTiming], name: &str) -> &'t PassTiming {
-    let full = |pass: &PassTiming| format!("{}/{}", pass.piece, pass.pass);
-    passes.iter().find(|pass| full(pass) == name).expect("a pass of this name")
+    passes.iter().find(|pass| pass.full_name() == name).expect("a pass of this name")
 }
 
 fn write_arguments(graph: &mut Graph<'_>, arguments: BufferRef<u32>, first: u32, groups: [u32; 3]) {

@@ -76,7 +76,7 @@ fn ran(frame: &Frame, piece: &str) -> bool {
 }
 
 fn reason<'f>(frame: &'f Frame, name: &str) -> Option<&'f str> {
-    let named = |pass: &&PassTiming| format!("{}/{}", pass.piece, pass.pass).starts_with(name);
+    let named = |pass: &&PassTiming| pass.full_name().starts_with(name);
     frame.timings.passes.iter().find(named)?.skipped.as_deref()
 }
 

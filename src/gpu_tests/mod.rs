@@ -34,6 +34,7 @@ mod photon_stage;
 mod photons_emit;
 mod photons_land;
 mod photons_probe;
+mod pieces;
 mod probe;
 mod raster;
 mod rays;

@@ -189,7 +189,7 @@ fn steps_grow_more_slowly_than_the_resolution() {
     let rays = coherent_rays(40);
     let mut steps = |resolution: &str| {
         let found = stage.trace(&photon_options(&[("resolution", resolution)]), &rays);
-        found.work("march.0", "steps") as f64
+        found.work("trace/march.0", "steps") as f64
     };
     let slope = (steps("512") / steps("64")).log2() / 3.0;
     assert!(slope < 0.6, "steps grow as the resolution to the power of {slope}");

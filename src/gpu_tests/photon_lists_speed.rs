@@ -48,8 +48,8 @@ fn rays_against_the_hierarchy() {
                     let before = cpu_ms();
                     let runs: Vec<Found> = (1..=RUNS).map(|salt| stage.trace_again(&settings, rays, salt)).collect();
                     let cpu = (cpu_ms() - before) / f64::from(RUNS);
-                    let least = runs.iter().map(|run| run.ms(&trace)).fold(f64::MAX, f64::min);
-                    let steps = first.work("march.0", "steps") as f64 / rays.len() as f64;
+                    let least = runs.iter().map(|run| run.ms(&format!("trace/{trace}"))).fold(f64::MAX, f64::min);
+                    let steps = first.work("trace/march.0", "steps") as f64 / rays.len() as f64;
                     println!("{place} {} {what} rays: {least:.2} ms, cpu {cpu:.2} ms, {steps:.1} steps", rays.len());
                 }
                 let settings = &settings;
@@ -57,11 +57,11 @@ fn rays_against_the_hierarchy() {
                 let built: Vec<Found> = (0..RUNS).map(|_| stage.trace(settings, &[])).collect();
                 let cpu = (cpu_ms() - before) / f64::from(RUNS);
                 let least = |pass: &str| built.iter().map(|run| run.ms(pass)).fold(f64::MAX, f64::min);
-                let nodes = built[0].work("lists", "nodes");
+                let nodes = built[0].work("lists/", "nodes");
                 println!(
                     "{place} lists: {:.2} ms, of that blocks {:.2}, cpu {cpu:.2} ms, {nodes} nodes",
-                    least("lists"),
-                    least("lists-blocks")
+                    least("lists/"),
+                    least("lists/blocks")
                 );
             }
         }

@@ -209,7 +209,7 @@ fn crowded_tiles_are_shared() {
     for downscale in ["1", "2"] {
         let [tiles, discs] = WAYS.map(|way| settings(&[("splat", way), ("downscale", downscale)]));
         let (light, passes) = bench.run(&tiles, &photons, Timing::Passes);
-        let touch = passes.iter().find(|pass| pass.pass == "touch").expect("it ran");
+        let touch = passes.iter().find(|pass| pass.pass == "splat/touch").expect("it ran");
         assert!(touch.work["crowded tiles"] > 0);
         photons.reverse();
         assert!(light == bench.irradiance(&tiles, &photons), "the order shows");
@@ -348,9 +348,9 @@ fn no_photon_gives_black_without_work() {
             assert!(largest(&bench.irradiance(&settings, &[some])) > 0.0);
             let (light, passes) = bench.run(&settings, &[], Timing::Passes);
             assert!(light.iter().all(|color| *color == DVec3::ZERO));
-            for pass in
-                passes.iter().filter(|pass| ["gather", "resolve", "project", "upsample"].contains(&pass.pass.as_str()))
-            {
+            for pass in passes.iter().filter(|pass| {
+                ["splat/gather", "splat/resolve", "splat/project", "splat/upsample"].contains(&pass.pass.as_str())
+            }) {
                 assert_eq!(pass.work.get("invocations").copied().unwrap_or(0), 0, "{pass:?}");
             }
         }

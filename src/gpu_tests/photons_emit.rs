@@ -191,7 +191,7 @@ fn photons_that_nothing_changed_are_not_sent_again() {
     let session = Session::open();
     let settings = photon_settings(&[("photons.max", "500"), ("lights.resolution", "64")]);
     for pass in passes_of_second_frame(&session, &builtin("ring"), &settings) {
-        assert!(pass.skipped.is_some(), "{}/{} runs again", pass.piece, pass.pass);
+        assert!(pass.skipped.is_some(), "{} runs again", pass.full_name());
     }
 }
 

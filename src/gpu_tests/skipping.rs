@@ -4,7 +4,7 @@ use glam::DAffine3;
 
 use super::scenes::{add_light, builtin, closed_box, floor, lambert, request, settings, view};
 use super::session::Session;
-use crate::renderer::{DiffuseMethod, Frame, FrameRequest, Renderer, Slot, Timing, ToneMap};
+use crate::renderer::{DiffuseMethod, Frame, FrameRequest, PassTiming, Renderer, Slot, Timing, ToneMap};
 use crate::scene::{LightId, LightKind, MaterialId, NodeId, Scene};
 use glam::DVec3;
 
@@ -20,15 +20,12 @@ fn small(scene: &Scene, session: &Session) -> (Renderer, FrameRequest) {
 /// Full names of the passes that ran.
 fn ran(frame: &Frame) -> Vec<String> {
     let passes = frame.timings.passes.iter().filter(|pass| pass.skipped.is_none());
-    passes.map(|pass| format!("{}/{}", pass.piece, pass.pass)).collect()
+    passes.map(PassTiming::full_name).collect()
 }
 
 /// Why the pass, or all of the piece, did not run.
 fn reason<'f>(frame: &'f Frame, name: &str) -> Option<&'f str> {
-    let named = |pass: &&crate::renderer::PassTiming| {
-        format!("{}/{}", pass.piece, pass.pass).trim_end_matches('/').starts_with(name)
-    };
-    let row = frame.timings.passes.iter().find(named).expect("a pass of this name");
+    let row = frame.timings.passes.iter().find(|pass| pass.full_name().starts_with(name)).expect("a pass of this name");
     row.skipped.as_deref()
 }
 
@@ -136,7 +133,7 @@ fn what_nobody_asks_for_is_not_made() {
     let request = FrameRequest { slots: vec![Slot::Direct], image: false, tonemap: None, ..whole.clone() };
     let frame = renderer.render(&scene, &request).expect("a frame");
     let names = ran(&frame);
-    assert_eq!(names, ["gbuffer/plain", "light-views/depth", "direct/shadow-map"]);
+    assert_eq!(names, ["gbuffer/plain", "light-views/depth", "direct/shadow-map/shade"]);
     assert!(frame.image.is_none() && frame.display.is_none());
 
     let mut settings = renderer.settings().clone();

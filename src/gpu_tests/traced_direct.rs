@@ -266,8 +266,7 @@ fn traced_light_is_the_same_in_every_run() {
 
 /// Every pass's name, and why it did not run.
 fn passes(frame: &Frame) -> Vec<(String, Option<&str>)> {
-    let name = |pass: &crate::renderer::PassTiming| format!("{}/{}", pass.piece, pass.pass);
-    frame.timings.passes.iter().map(|pass| (name(pass), pass.skipped.as_deref())).collect()
+    frame.timings.passes.iter().map(|pass| (pass.full_name(), pass.skipped.as_deref())).collect()
 }
 
 #[test]
@@ -285,19 +284,23 @@ fn only_lights_that_there_are_cost_passes() {
     assert_eq!(
         run(&builtin("cornell-point"), &traced(4)),
         [
-            runs("direct/punctual"),
-            skipped("direct/emitters", "no emissive surface"),
-            skipped("direct/directions", nothing_around)
+            runs("direct/traced/punctual"),
+            skipped("direct/traced/emitters", "no emissive surface"),
+            skipped("direct/traced/directions", nothing_around)
         ]
     );
     let panel = builtin("cornell-panel");
     assert_eq!(
         run(&panel, &traced(4)),
-        [skipped("direct/punctual", "no punctual light"), runs("direct/emitters"), runs("direct/directions")]
+        [
+            skipped("direct/traced/punctual", "no punctual light"),
+            runs("direct/traced/emitters"),
+            runs("direct/traced/directions")
+        ]
     );
     let without_samples = run(&panel, &traced(0));
-    assert_eq!(without_samples[1], skipped("direct/emitters", "no samples asked for"));
-    assert_eq!(run(&floor(1.0, lambert([0.5; 3])), &traced(4)), [skipped("direct/", "no light")]);
+    assert_eq!(without_samples[1], skipped("direct/traced/emitters", "no samples asked for"));
+    assert_eq!(run(&floor(1.0, lambert([0.5; 3])), &traced(4)), [skipped("direct/traced", "no light")]);
 }
 
 /// The scene for rays is there if it is used, follows edits, and goes with the method.

@@ -8,7 +8,7 @@ use super::pass::{ClearColor, Counter, DrawList, Draws, Pass, Targets, Work};
 use crate::vulkan::RasterState;
 
 impl<'s> Graph<'s> {
-    /// A compute pass. `name` is `piece/pass`: timer, debug label and crash marker.
+    /// A compute pass. `name` is `slot/method/level/pass`, or `piece/pass` for what methods share: timer, debug label and crash marker.
     pub(crate) fn pass<B: BindingSet>(&mut self, name: &str, bindings: B) -> PassBuilder<'_, 's> {
         PassBuilder::new(self, name, &bindings, None)
     }

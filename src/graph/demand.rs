@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 pub(crate) type Place = (usize, u32);
 
 /// A content of a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Version {
     pub(crate) place: Place,
     pub(crate) key: u64,
@@ -35,35 +35,82 @@ pub(crate) enum Verdict {
 /// Decides about `passes`, in the order of their declaration, when `wanted` is asked for and `stored` tells what each
 /// place holds.
 pub(crate) fn decide(passes: &[Needs], wanted: &[Version], stored: impl Fn(Place) -> Option<u64>) -> Vec<Verdict> {
-    let asked = walk(passes, wanted, |_| false).0;
+    let none = vec![false; passes.len()];
+    let asked = walk(passes, wanted, &none, |_| false).0;
+    verdicts(&asked, &settle(passes, wanted, &none, stored, |_| HashSet::new()))
+}
+
+/// Decides which of `passes` run so that those of them that are `forced`, and that `wanted` asks for, do once more: apart from them those alone that
+/// make what the forced ones need and memory no longer holds, because a later pass has changed it since.
+///
+/// What is made again may differ from what it was in the order of its elements. So nothing that memory holds of what came of it meets it: who reads
+/// such a content has it made again too.
+pub(crate) fn decide_again(
+    passes: &[Needs],
+    wanted: &[Version],
+    forced: &[bool],
+    stored: impl Fn(Place) -> Option<u64>,
+) -> Vec<Verdict> {
+    let asked = walk(passes, wanted, &vec![false; passes.len()], |_| false).0;
+    let forced: Vec<bool> = forced.iter().zip(&asked).map(|(forced, asked)| *forced && *asked).collect();
+    verdicts(&asked, &settle(passes, &[], &forced, stored, |runs| made_anew(passes, runs)))
+}
+
+/// The contents that running passes make, and all that come of them.
+fn made_anew(passes: &[Needs], runs: &[bool]) -> HashSet<Version> {
+    let mut anew = HashSet::new();
+    for (pass, runs) in passes.iter().zip(runs) {
+        if *runs || pass.reads.iter().any(|read| anew.contains(read)) {
+            anew.extend(&pass.writes);
+        }
+    }
+    anew
+}
+
+fn verdicts(asked: &[bool], runs: &[bool]) -> Vec<Verdict> {
+    let verdict = |(asked, runs): (&bool, &bool)| match (asked, runs) {
+        (_, true) => Verdict::Run,
+        (true, false) => Verdict::Unchanged,
+        (false, false) => Verdict::NotAsked,
+    };
+    asked.iter().zip(runs).map(verdict).collect()
+}
+
+/// Which passes run: `forced` ones, and those that make what they or `wanted` ask for and memory does not hold. None takes
+/// from memory what is `unfit` when these run.
+fn settle(
+    passes: &[Needs],
+    wanted: &[Version],
+    forced: &[bool],
+    stored: impl Fn(Place) -> Option<u64>,
+    unfit: impl Fn(&[bool]) -> HashSet<Version>,
+) -> Vec<bool> {
     let mut stale: HashSet<Place> = HashSet::new();
     loop {
         let held = |version: Version| !stale.contains(&version.place) && stored(version.place) == Some(version.key);
-        let (runs, taken) = walk(passes, wanted, held);
+        let (runs, taken) = walk(passes, wanted, forced, held);
         // A content taken from memory must not be overwritten by an earlier pass that has to run after all.
-        let clobbered = taken.into_iter().find(|(user, version)| {
-            passes[..*user]
-                .iter()
-                .zip(&runs)
-                .any(|(pass, runs)| *runs && pass.writes.iter().any(|write| write.place == version.place))
-        });
-        match clobbered {
+        let overwritten = |user: usize, version: Version| {
+            let mut earlier = passes[..user].iter().zip(&runs);
+            earlier.any(|(pass, runs)| *runs && pass.writes.iter().any(|write| write.place == version.place))
+        };
+        let unfit = unfit(&runs);
+        let lost = |(user, version): &(usize, Version)| overwritten(*user, *version) || unfit.contains(version);
+        match taken.into_iter().find(lost) {
             Some((_, version)) => drop(stale.insert(version.place)),
-            None => {
-                let verdict = |(asked, runs): (&bool, &bool)| match (asked, runs) {
-                    (_, true) => Verdict::Run,
-                    (true, false) => Verdict::Unchanged,
-                    (false, false) => Verdict::NotAsked,
-                };
-                return asked.iter().zip(&runs).map(verdict).collect();
-            }
+            None => return runs,
         }
     }
 }
 
 /// Which passes run when `held` contents need none, and which contents are taken from memory: by which pass (its
-/// number; `passes.len()` for `wanted`).
-fn walk(passes: &[Needs], wanted: &[Version], held: impl Fn(Version) -> bool) -> (Vec<bool>, Vec<(usize, Version)>) {
+/// number; `passes.len()` for `wanted`). `forced` passes run in any case.
+fn walk(
+    passes: &[Needs],
+    wanted: &[Version],
+    forced: &[bool],
+    held: impl Fn(Version) -> bool,
+) -> (Vec<bool>, Vec<(usize, Version)>) {
     let mut runs = vec![false; passes.len()];
     let mut wants: HashMap<Place, u64> = HashMap::new();
     let mut taken = Vec::new();
@@ -78,7 +125,7 @@ fn walk(passes: &[Needs], wanted: &[Version], held: impl Fn(Version) -> bool) ->
         want(passes.len(), version, &mut wants, &mut taken);
     }
     for (index, pass) in passes.iter().enumerate().rev() {
-        runs[index] = pass.writes.iter().any(|write| wants.get(&write.place) == Some(&write.key));
+        runs[index] = forced[index] || pass.writes.iter().any(|write| wants.get(&write.place) == Some(&write.key));
         if runs[index] {
             for write in &pass.writes {
                 wants.remove(&write.place);
@@ -144,5 +191,57 @@ mod tests {
             [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(2, 6)])];
         assert_eq!(run(&passes, &[(1, 5), (2, 6)], &[(0, 2)]), [Run, Run, Run, Run]);
         assert_eq!(run(&passes, &[(2, 6)], &[(0, 2)]), [Unchanged, NotAsked, Unchanged, Run]);
+    }
+
+    /// `forced` are numbers of passes; the frame wants the output of the last one.
+    fn again(passes: &[Needs], forced: &[usize], stored: &[(usize, u64)]) -> Vec<Verdict> {
+        let forced: Vec<bool> = (0..passes.len()).map(|index| forced.contains(&index)).collect();
+        let wanted = &passes[passes.len() - 1].writes;
+        decide_again(passes, wanted, &forced, |(resource, _)| {
+            stored.iter().find(|(place, _)| *place == resource).map(|(_, key)| *key)
+        })
+    }
+
+    #[test]
+    fn a_forced_pass_runs_alone_if_memory_holds_its_inputs() {
+        let passes = [pass(&[], &[(0, 10)]), pass(&[(0, 10)], &[(1, 11)]), pass(&[(1, 11)], &[(2, 12)])];
+        let stored = [(0, 10), (1, 11), (2, 12)];
+        assert_eq!(again(&passes, &[1], &stored), [Unchanged, Run, Unchanged]);
+        assert_eq!(again(&passes, &[0, 1], &stored), [Run, Run, Unchanged]);
+        assert_eq!(again(&passes, &[2], &[(0, 99), (1, 11)]), [Unchanged, Unchanged, Run]);
+        assert_eq!(again(&passes, &[2], &[(0, 10)]), [Unchanged, Run, Run], "its input is made");
+        assert_eq!(again(&passes, &[], &stored), [Unchanged; 3]);
+    }
+
+    #[test]
+    fn a_forced_pass_that_nobody_asks_for_does_not_run() {
+        let passes = [pass(&[], &[(0, 10)]), pass(&[], &[(1, 11)]), pass(&[(0, 10)], &[(2, 12)])];
+        assert_eq!(again(&passes, &[1, 2], &[(0, 10), (1, 11)]), [Unchanged, NotAsked, Run]);
+    }
+
+    #[test]
+    fn what_was_modified_since_is_made_for_a_forced_pass() {
+        // 0 counts; 1 reads the counts, 2 goes on counting, 3 reads what came of both.
+        let passes = [
+            pass(&[], &[(0, 1)]),
+            pass(&[(0, 1)], &[(1, 5)]),
+            pass(&[(0, 1)], &[(0, 2)]),
+            pass(&[(0, 2), (1, 5)], &[(2, 6)]),
+        ];
+        let stored = [(0, 2), (1, 5), (2, 6)];
+        assert_eq!(again(&passes, &[1], &stored), [Run, Run, Unchanged, Unchanged]);
+        // After that memory holds the first counts, and it stays so.
+        assert_eq!(again(&passes, &[1], &[(0, 1), (1, 5), (2, 6)]), [Unchanged, Run, Unchanged, Unchanged]);
+        assert_eq!(again(&passes, &[2], &stored), [Run, Unchanged, Run, Unchanged]);
+    }
+
+    #[test]
+    fn what_came_of_another_order_is_made_again_too() {
+        // 1 sorts by the order that 0 leaves, 2 reads both.
+        let passes = [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1), (1, 5)], &[(2, 6)])];
+        let stored = [(0, 1), (1, 5), (2, 6)];
+        assert_eq!(again(&passes, &[0, 2], &stored), [Run, Run, Run], "2 must not mix the new order with the old one");
+        assert_eq!(again(&passes, &[2], &stored), [Unchanged, Unchanged, Run], "the old one fits itself");
+        assert_eq!(again(&passes, &[0], &stored), [Run, Unchanged, Unchanged]);
     }
 }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use super::declare::Graph;
 use super::demand::{Verdict, Version};
 use super::pass::Pass;
+use super::piece::joined;
 
 /// The passes of a frame, which of them are skipped and why, and what flows between them.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +47,12 @@ impl Graph<'_> {
 
 impl DescribedPass {
     fn full_name(&self) -> String {
-        if self.name.is_empty() { self.piece.clone() } else { format!("{}/{}", self.piece, self.name) }
+        joined(&self.piece, &self.name)
+    }
+
+    /// What tells it from the others of its piece.
+    fn label(&self) -> &str {
+        if self.name.is_empty() { &self.piece } else { &self.name }
     }
 }
 
@@ -89,11 +95,11 @@ impl GraphDescription {
                         out,
                         "    {} [shape=box, style=dashed, label={}];",
                         quoted(&name),
-                        quoted(&format!("{}\n{reason}", pass.name)).replace('\n', "\\n")
+                        quoted(&format!("{}\n{reason}", pass.label())).replace('\n', "\\n")
                     )
                     .ok(),
                     None => {
-                        writeln!(out, "    {} [shape=box, style=bold, label={}];", quoted(&name), quoted(&pass.name))
+                        writeln!(out, "    {} [shape=box, style=bold, label={}];", quoted(&name), quoted(pass.label()))
                             .ok()
                     }
                 };

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::bindings::Access;
 use super::declare::Graph;
-use super::demand::{Needs, Verdict, Version, decide};
+use super::demand::{Needs, Place, Verdict, Version, decide, decide_again};
+use super::piece::lies_in;
 use super::resource::{Body, ReadBack};
 use super::store::MAX_PASSES;
 use super::timing::{PassTiming, Timing};
@@ -33,29 +34,51 @@ impl Executed {
 impl Graph<'_> {
     /// Whether each pass runs.
     pub(super) fn verdicts(&self) -> Vec<Verdict> {
-        let needs: Vec<Needs> = self.passes.iter().map(|pass| pass.needs.clone()).collect();
-        let stored = |(resource, mip): (usize, u32)| {
-            let resource = &self.resources[resource];
-            match &resource.body {
-                // The host writes them before the frame; the scene's stand anyway.
-                Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => {
-                    Some(resource.content[mip as usize].0)
-                }
-                Body::Image(info) if self.store.fits(resource) => self.store.image_key(&resource.name, info, mip),
-                Body::Buffer { bytes } if self.store.fits(resource) => self.store.buffer_key(&resource.name, *bytes),
-                Body::Image(_) | Body::Buffer { .. } => None,
+        decide(&self.needs(), &self.wanted, |place| self.held(place))
+    }
+
+    fn needs(&self) -> Vec<Needs> {
+        self.passes.iter().map(|pass| pass.needs.clone()).collect()
+    }
+
+    /// The key of what memory holds.
+    fn held(&self, (resource, mip): Place) -> Option<u64> {
+        let resource = &self.resources[resource];
+        match &resource.body {
+            // The host writes them before the frame; the scene's stand anyway.
+            Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => {
+                Some(resource.content[mip as usize].0)
             }
-        };
-        decide(&needs, &self.wanted, stored)
+            Body::Image(info) if self.store.fits(resource) => self.store.image_key(&resource.name, info, mip),
+            Body::Buffer { bytes } if self.store.fits(resource) => self.store.buffer_key(&resource.name, *bytes),
+            Body::Image(_) | Body::Buffer { .. } => None,
+        }
     }
 
     /// Runs the passes that are needed and waits for them.
     ///
     /// # Errors
     /// A lost device and exhausted memory name the last pass that finished.
-    pub(crate) fn run(mut self, timing: Timing) -> Result<Executed, VulkanError> {
+    pub(crate) fn run(self, timing: Timing) -> Result<Executed, VulkanError> {
         let verdicts = self.verdicts();
-        let result = self.execute(&verdicts, timing);
+        self.run_passes(&verdicts, timing)
+    }
+
+    /// Runs those passes of `piece` once more that the frame needs, and apart from them those alone that make what they read and memory no longer
+    /// holds. Nothing is read back. What memory holds afterwards fits the next run of this piece; before anything else it has to be forgotten.
+    ///
+    /// # Errors
+    /// As [`Graph::run`].
+    pub(crate) fn run_again(mut self, piece: &str, timing: Timing) -> Result<Executed, VulkanError> {
+        let forced: Vec<bool> = self.passes.iter().map(|pass| lies_in(&pass.full_name(), piece)).collect();
+        let verdicts = decide_again(&self.needs(), &self.wanted, &forced, |place| self.held(place));
+        self.read_backs.clear();
+        self.growing.clear();
+        self.run_passes(&verdicts, timing)
+    }
+
+    fn run_passes(mut self, verdicts: &[Verdict], timing: Timing) -> Result<Executed, VulkanError> {
+        let result = self.execute(verdicts, timing);
         if result.is_err() {
             // Whatever was recorded may not have run.
             self.store.forget();

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::bindings::Access;
 use super::demand::{Needs, Verdict};
 use super::dependence::Dependence;
+use super::piece::{joined, split};
 use crate::vulkan::program::Program;
 use crate::vulkan::{Buffer, MaterialSets, RasterState};
 
@@ -85,6 +86,7 @@ pub(super) struct Counter {
 
 pub(super) struct Pass {
     pub(super) piece: String,
+    /// Within its piece.
     pub(super) name: String,
     pub(super) program: Option<&'static Program>,
     pub(super) constants: Vec<u32>,
@@ -102,7 +104,7 @@ pub(super) struct Pass {
 
 impl Pass {
     pub(super) fn new(name: &str, work: Work) -> Pass {
-        let (piece, pass) = name.rsplit_once('/').unwrap_or((name, ""));
+        let (piece, pass) = split(name);
         Pass {
             piece: piece.to_owned(),
             name: pass.to_owned(),
@@ -129,7 +131,7 @@ impl Pass {
     }
 
     pub(super) fn full_name(&self) -> String {
-        format!("{}/{}", self.piece, self.name)
+        joined(&self.piece, &self.name)
     }
 
     pub(super) fn accesses(&self) -> impl Iterator<Item = &Access> {

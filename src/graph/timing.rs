@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::piece::{joined, lies_in};
+
 /// How the frame is timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -19,9 +21,9 @@ pub enum Timing {
 /// One pass of the frame: its cost, or why it did not run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassTiming {
-    /// The piece that the pass belongs to, such as `light-views`.
+    /// The piece that the pass belongs to, such as `light-views` or `caustics/photons`.
     pub piece: String,
-    /// The pass within its piece.
+    /// The pass within its piece, in levels, such as `lists/clear`; empty for a piece that is skipped as a whole.
     pub pass: String,
     /// GPU time in milliseconds; `None` if it was skipped or passes were not timed.
     pub ms: Option<f64>,
@@ -29,6 +31,18 @@ pub struct PassTiming {
     pub skipped: Option<String>,
     /// What the pass did: invocations, triangles, VPLs …
     pub work: BTreeMap<String, u64>,
+}
+
+impl PassTiming {
+    /// The name that the pass goes by in labels and messages: its piece's and its own.
+    pub fn full_name(&self) -> String {
+        joined(&self.piece, &self.pass)
+    }
+
+    /// Whether the pass is part of `piece`: a piece, a level of one, or a pass by its full name.
+    pub fn lies_in(&self, piece: &str) -> bool {
+        lies_in(&self.full_name(), piece)
+    }
 }
 
 /// What the frame cost.

@@ -25,6 +25,7 @@ mod estimates;
 mod frame;
 mod methods;
 mod render;
+mod repeat;
 mod settings;
 mod technique;
 
@@ -32,6 +33,7 @@ pub use choices::{CausticsMethod, DiffuseMethod, DirectMethod, Methods, Specular
 pub use context::Context;
 pub use frame::{Estimate, Frame, FrameRequest};
 pub use render::Renderer;
+pub use repeat::{RepeatError, Repetition, check_piece};
 pub use settings::{Settings, SettingsError, options};
 pub use technique::{Technique, UnknownTechnique};
 

@@ -25,12 +25,12 @@ use crate::vulkan::{Device, VulkanError};
 /// What a scene, its lights and the camera leave unchanged from one frame to the next is not made again. Any scene may be
 /// rendered at any time; changing between scenes uploads them anew.
 pub struct Renderer {
-    settings: Settings,
-    data: Option<SceneData>,
-    lights: LightSet,
+    pub(super) settings: Settings,
+    pub(super) data: Option<SceneData>,
+    pub(super) lights: LightSet,
     /// Held while something sends rays.
     traced: Option<Arc<TracedScene>>,
-    store: Store,
+    pub(super) store: Store,
     /// Held once an estimator fills a slot.
     estimates: Option<Estimates>,
 }
@@ -116,7 +116,7 @@ impl Renderer {
     }
 
     /// The means of the slots that an estimator fills.
-    fn estimate(
+    pub(super) fn estimate(
         &mut self,
         scene: &Scene,
         request: &FrameRequest,
@@ -206,9 +206,6 @@ impl Renderer {
         let mut graph = Graph::new(&mut self.store);
         let declared = declare(&mut graph, &prepared, &self.settings, request)?;
         want(&mut graph, &declared, request);
-        if let Some(display) = declared.display {
-            graph.want_buffer(display);
-        }
         estimated.append(graph.describe());
         Ok(estimated)
     }
@@ -227,7 +224,7 @@ impl Renderer {
     }
 
     /// Brings the scene and its lights up to date on the device. Returns what rays meet, if the frame's passes send any.
-    fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Option<Arc<TracedScene>>, Error> {
+    pub(super) fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Option<Arc<TracedScene>>, Error> {
         let device = self.store.device().clone();
         let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
@@ -268,10 +265,13 @@ impl Renderer {
 }
 
 /// The frame's images stay on the device.
-fn want(graph: &mut Graph<'_>, declared: &Declared, request: &FrameRequest) {
+pub(super) fn want(graph: &mut Graph<'_>, declared: &Declared, request: &FrameRequest) {
     let slots = request.slots.iter().filter_map(|&slot| declared.slot(slot));
     for image in slots.chain(declared.image.filter(|_| request.image)) {
         graph.want(image);
+    }
+    if let Some(display) = declared.display {
+        graph.want_buffer(display);
     }
 }
 

@@ -334,6 +334,29 @@ fn a_failing_scene_does_not_stop_the_bench() {
 }
 
 #[test]
+fn the_bench_times_a_piece_on_its_own() {
+    let json = folder("bench-piece").join("a.json");
+    let measured =
+        ["bench", "cornell-point", "--technique", "direct,rsm", "--frames", "2", "--warmup", "0", "--size", "32x24"];
+    let pieces = ["--piece", "diffuse/rsm", "--piece", "light-views", "--json", text(&json)];
+    let output = succeed(&[&measured[..], &pieces].concat());
+    let tables = String::from_utf8_lossy(&output.stdout);
+    assert!(tables.contains("diffuse/rsm alone") && tables.contains("there is no piece"), "{tables}");
+    let report: Report = serde_json::from_str(&fs::read_to_string(&json).expect("written")).expect("the schema");
+    for run in &report.runs {
+        let [rsm, views] = &run.piece_alone[..] else { panic!("{:?}", run.piece_alone) };
+        assert_eq!((&*rsm.piece, rsm.skipped.is_some()), ("diffuse/rsm", run.technique == "direct"));
+        assert!(views.ms.median > 0.0 && views.in_frame_ms.median > 0.0 && !views.passes.is_empty(), "{views:?}");
+    }
+    let unknown = irradia(&[&measured[..], &["--piece", "diffuse/rms"]].concat());
+    let message = stderr(&unknown);
+    assert_eq!((unknown.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+    for word in ["diffuse/rms", "diffuse/rsm", "light-views"] {
+        assert!(message.contains(word), "{word} is not in: {message}");
+    }
+}
+
+#[test]
 fn the_bench_says_how_far_techniques_are_from_references() {
     let folder = folder("bench-reference");
     let (json, cache) = (folder.join("a.json"), folder.join("cache"));

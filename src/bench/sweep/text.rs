@@ -55,7 +55,7 @@ fn time_cell(ours: f64, published: Option<f64>) -> String {
 /// The passes whose full names begin so, added up, milliseconds.
 fn column_ms(run: &Run, beginnings: &[String]) -> f64 {
     let is_of = |row: &&PassRow| {
-        let name = format!("{}/{}", row.piece, row.pass);
+        let name = row.full_name();
         beginnings.iter().any(|beginning| name.starts_with(beginning))
     };
     run.passes.iter().filter(is_of).fold(0.0, |sum, row| sum + row.ms.median)

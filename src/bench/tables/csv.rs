@@ -110,6 +110,6 @@ mod tests {
         let error = compared.lines().find(|line| line.contains(",error,diffuse,")).expect("a row");
         assert!(error.ends_with(",error,diffuse,,,,,,,0.125,0.0625,0.03125,0.004,0.5,0.25,0.125,0.002"), "{error}");
         assert!(compared.lines().all(|line| line.starts_with("scene,") || line.contains(",1024,768,")));
-        assert!(text.contains("caustics/splat,,,,,true,no specular surface"), "{text}");
+        assert!(text.contains("caustics/photons,,,,,true,no specular surface"), "{text}");
     }
 }

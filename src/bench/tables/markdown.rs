@@ -99,6 +99,6 @@ mod tests {
             assert!(text.contains(words), "{words} is not in\n{text}");
         }
         assert!(text.contains("| diffuse | 12.5 % | 50.0 % |"), "{text}");
-        assert!(text.contains("| caustics/splat | skipped |  |  |  | no specular surface |"), "{text}");
+        assert!(text.contains("| caustics/photons | skipped |  |  |  | no specular surface |"), "{text}");
     }
 }

@@ -31,6 +31,6 @@ pub(crate) fn trace(
         hits: rays.hits.write(),
         push: TracePush { shift: shift(data, traced), stage: rays.stage as u32 },
     };
-    let name = format!("caustics/photons/trace.{}", rays.stage);
+    let name = format!("caustics/photons/trace/bvh.{}", rays.stage);
     graph.pass(&name, pass).threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
 }

@@ -84,7 +84,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         arrival_counts: graph.buffer("photons.arrival_counts", STAGE_WORDS * (stages + 1)),
     };
 
-    graph.fill_buffer("caustics/photons/mask-clear", made.pyramid, 0);
+    graph.fill_buffer("caustics/photons/choose/mask-clear", made.pyramid, 0);
     let tiles = tiles_of(set);
     let tile_list = graph.upload("photons.tiles", &tiles, Dependence::LIGHTS).texels(WORDS);
     for level in (0..level_count.saturating_sub(1).max(1)).step_by(LEVELS_OF_PASS) {
@@ -97,7 +97,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
             pyramid: made.pyramid.read_write(),
             push: PyramidPush { level: level as u32, columns, count },
         };
-        graph.pass(&format!("caustics/photons/mask.{level}"), pass).threads([count, 1, 1]);
+        graph.pass(&format!("caustics/photons/choose/mask.{level}"), pass).threads([count, 1, 1]);
     }
 
     let pass = Choose {
@@ -109,7 +109,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         push: ChoosePush { level_count: level_count as u32, most, stage_count: stages as u32 + 1 },
     };
     graph
-        .pass("caustics/photons/choose", pass)
+        .pass("caustics/photons/choose/choose", pass)
         .count("specular texels", made.pyramid, 0)
         .count("level", made.choice, CHOICE_LEVEL)
         .count("photons", made.choice, CHOICE_PHOTONS)
@@ -124,7 +124,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         push: ListPush { level_count: level_count as u32, capacity: most },
     };
     graph
-        .pass("caustics/photons/choose-list", pass)
+        .pass("caustics/photons/choose/list", pass)
         .count("blocks", made.choice, CHOICE_LISTED)
         .threads_indirect(made.choice, 0);
     made

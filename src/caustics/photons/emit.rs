@@ -67,7 +67,7 @@ pub(crate) fn emit(cx: &mut FrameCx<'_, '_>, views: &SpecularViews, choice: &Cho
         arrival_beams: made.beams.write(),
         push: EmitPush { tiles_per_row, radius: cx.frame.data.radius as f32 },
     };
-    graph.pass("caustics/photons/emit", pass).threads_indirect(choice.choice, CHOICE_EMIT);
+    graph.pass("caustics/photons/trace/emit", pass).threads_indirect(choice.choice, CHOICE_EMIT);
 }
 
 /// Sends the photons that arrived on as the rays of a stage.
@@ -96,7 +96,7 @@ pub(crate) fn scatter(
         },
     };
     cx.graph
-        .pass(&format!("caustics/photons/scatter.{}", rays.stage), pass)
+        .pass(&format!("caustics/photons/trace/scatter.{}", rays.stage), pass)
         .count("rays", choice.counts, Choice::count_word(rays.stage))
         .threads_indirect(choice.arrival_counts, STAGE_WORDS * rays.stage);
 }

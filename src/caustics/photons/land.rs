@@ -27,7 +27,7 @@ pub(crate) fn land(
 ) {
     let (landed, next) = lists;
     let (graph, data) = (&mut *cx.graph, cx.frame.data);
-    let name = format!("caustics/photons/land.{}", rays.stage);
+    let name = format!("caustics/photons/trace/land.{}", rays.stage);
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
     let ellipses = if rays.stage == 0 { landed.ellipses.write() } else { landed.ellipses.modify() };

@@ -27,12 +27,12 @@ pub(super) fn peel(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &Scene
     });
     let peeling = Peeling { inputs, lists, draw_views: &draw_views, depth };
     // The first layer follows the eye.
-    graph.clear_image("caustics/photons/layers-clear", layers[1], ClearColor::Uint([0; 4]));
+    graph.clear_image("caustics/photons/lists/layers-clear", layers[1], ClearColor::Uint([0; 4]));
     if inputs.data.drawn.iter().all(is_solid) {
-        graph.skip("caustics/photons/layers-masked", "no surface cut out by its alpha");
+        graph.skip("caustics/photons/lists/layers-masked", "no surface cut out by its alpha");
     }
     // The pool starts empty, so that what it held does not matter.
-    graph.fill_buffer("caustics/photons/layers-clear-nodes", lists.nodes, 0);
+    graph.fill_buffer("caustics/photons/lists/layers-clear-nodes", lists.nodes, 0);
     for number in 0..count {
         let (layer, previous) = (layers[number as usize % 2], layers[(number as usize + 1) % 2]);
         peeling.draw(graph, number, layer, previous);
@@ -45,7 +45,7 @@ pub(super) fn peel(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &Scene
             push: LayerPush { number, pixel_count },
         };
         graph
-            .pass(&format!("caustics/photons/layers-append.{number}"), pass)
+            .pass(&format!("caustics/photons/lists/layers-append.{number}"), pass)
             .count("nodes", lists.node_count, 0)
             .threads([pixel_count, 1, 1]);
     }
@@ -70,7 +70,7 @@ impl Peeling<'_> {
             push: PeelPush { view_index: 0, view_count, resolution, capacity },
         };
         let list = draw_list(data, Attributes::Depth, self.draw_views, is_solid);
-        let name = format!("caustics/photons/layers.{number}");
+        let name = format!("caustics/photons/lists/layers.{number}");
         graph
             .raster(&name, solid, Attributes::Depth.raster_state(data))
             .note("views", u64::from(view_count))
@@ -91,7 +91,7 @@ impl Peeling<'_> {
         let list = draw_list(data, Attributes::DepthMasked, self.draw_views, cut);
         graph
             .raster(
-                &format!("caustics/photons/layers-masked.{number}"),
+                &format!("caustics/photons/lists/layers-masked.{number}"),
                 masked,
                 Attributes::DepthMasked.raster_state(data),
             )

@@ -21,8 +21,8 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     let arguments = graph.buffer::<u32>(&format!("photons.line_arguments.{stage}"), DRAW_WORDS);
     let push = LineArgumentsPush { stage: stage as u32, capacity: rays.capacity };
     let pass = LineArguments { counts: counts.read(), arguments: arguments.write(), push };
-    graph.pass(&format!("caustics/photons/lines-arguments.{stage}"), pass).groups([1, 1, 1]);
-    graph.fill_buffer(&format!("caustics/photons/lines-clear.{stage}"), rays.hits, u32::MAX);
+    graph.pass(&format!("caustics/photons/trace/lines-arguments.{stage}"), pass).groups([1, 1, 1]);
+    graph.fill_buffer(&format!("caustics/photons/trace/lines-clear.{stage}"), rays.hits, u32::MAX);
     for view_index in 0..lists.view_count {
         let pass = Lines {
             rays: rays.rays.texels(words),
@@ -32,7 +32,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         };
         let state = RasterState { topology: vk::PrimitiveTopology::LINE_LIST, ..RasterState::default() };
         graph
-            .raster(&format!("caustics/photons/lines.{stage}.{view_index}"), pass, state)
+            .raster(&format!("caustics/photons/trace/lines.{stage}.{view_index}"), pass, state)
             .area([lists.resolution; 2])
             .draw_indirect(arguments, 0, 1);
     }
@@ -49,6 +49,6 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         },
     };
     graph
-        .pass(&format!("caustics/photons/lines-resolve.{stage}"), resolve)
+        .pass(&format!("caustics/photons/trace/lines-resolve.{stage}"), resolve)
         .threads_indirect(counts, STAGE_WORDS * stage + DISPATCH_WORD);
 }

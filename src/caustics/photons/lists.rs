@@ -61,8 +61,8 @@ pub(crate) fn build_from(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, pool: u
         node_count: graph.buffer("photons.lists.node_count", 1),
         blocks: Blocks { slices: graph.buffer("photons.lists.blocks", block_count), top, first_of_level },
     };
-    graph.fill_buffer("caustics/photons/lists-clear", lists.pixels, u32::MAX);
-    graph.fill_buffer("caustics/photons/lists-clear-count", lists.node_count, 0);
+    graph.fill_buffer("caustics/photons/lists/clear", lists.pixels, u32::MAX);
+    graph.fill_buffer("caustics/photons/lists/clear-count", lists.node_count, 0);
     match inputs.options.geometry {
         PhotonGeometry::Lists => {
             append(graph, inputs, &lists, &views);
@@ -106,14 +106,14 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         push: AppendPush { view_index: 0, view_count, resolution, capacity },
     };
     let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
-    let pass = graph.raster("caustics/photons/lists", solid, state(Attributes::Depth));
+    let pass = graph.raster("caustics/photons/lists/draw", solid, state(Attributes::Depth));
     pass.note("views", u64::from(view_count))
         .note("capacity", u64::from(capacity))
         .count("nodes", lists.node_count, 0)
         .area(area)
         .draw(list);
     if data.drawn.iter().all(is_solid) {
-        graph.skip("caustics/photons/lists-masked", "no surface cut out by its alpha");
+        graph.skip("caustics/photons/lists/draw-masked", "no surface cut out by its alpha");
         return;
     }
     let cut = |drawn: &DrawnInstance| !is_solid(drawn);
@@ -127,7 +127,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         push: AppendMaskedPush { view_index: 0, view_count, resolution, capacity },
     };
     let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
-    let pass = graph.raster("caustics/photons/lists-masked", masked, state(Attributes::DepthMasked));
+    let pass = graph.raster("caustics/photons/lists/draw-masked", masked, state(Attributes::DepthMasked));
     pass.count("nodes", lists.node_count, 0).area(area).draw(list);
 }
 
@@ -143,12 +143,12 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
         blocks: blocks.slices.write(),
         push: OccupancyPush { resolution, view_count },
     };
-    graph.pass("caustics/photons/lists-blocks.1", finest).threads(threads(1));
+    graph.pass("caustics/photons/lists/blocks.1", finest).threads(threads(1));
     for level in 2..=blocks.top {
         let first = |level: u32| blocks.first_of_level[level as usize - 1];
         let push = CoarserPush { resolution, view_count, level, first: first(level), first_finer: first(level - 1) };
         let coarser = Coarser { blocks: blocks.slices.read_write(), push };
-        graph.pass(&format!("caustics/photons/lists-blocks.{level}"), coarser).threads(threads(level));
+        graph.pass(&format!("caustics/photons/lists/blocks.{level}"), coarser).threads(threads(level));
     }
 }
 

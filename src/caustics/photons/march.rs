@@ -13,7 +13,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
     let words = vk::Format::R32G32B32A32_UINT;
     // Steps taken, and rays that hit nothing.
     let work = graph.buffer::<u32>(&format!("photons.march_work.{}", rays.stage), 2);
-    graph.fill_buffer(&format!("caustics/photons/march-clear.{}", rays.stage), work, 0);
+    graph.fill_buffer(&format!("caustics/photons/trace/march-clear.{}", rays.stage), work, 0);
     let pass = March {
         rays: rays.rays.texels(words),
         photon_lists: lists.group(),
@@ -31,7 +31,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         },
     };
     graph
-        .pass(&format!("caustics/photons/march.{}", rays.stage), pass)
+        .pass(&format!("caustics/photons/trace/march.{}", rays.stage), pass)
         .count("steps", work, 0)
         .count("misses", work, 1)
         .threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);

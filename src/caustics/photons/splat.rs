@@ -46,13 +46,13 @@ pub(crate) fn splat(graph: &mut Graph<'_>, inputs: &SplatInputs<'_>, landed: &La
     let (buffer, options) = (inputs.buffer, inputs.options);
     let downscale = options.downscale.max(1);
     let slot = graph.image("caustics", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
-    graph.clear_image("caustics/photons/clear", slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
+    graph.clear_image("caustics/photons/splat/clear", slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
     let grid = Grid::upload(graph, buffer.size.map(|side| side.div_ceil(downscale)));
     let result = if downscale == 1 {
         slot
     } else {
         let irradiance = graph.image("photons.irradiance", vk::Format::R32G32B32A32_SFLOAT, grid.size);
-        graph.clear_image("caustics/photons/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
+        graph.clear_image("caustics/photons/splat/clear-irradiance", irradiance, ClearColor::Float([0.0; 4]));
         irradiance
     };
     let (cells, tile_count, capacity) = (grid.cell_count as usize, grid.tile_count(), landed.capacity.max(1) as usize);

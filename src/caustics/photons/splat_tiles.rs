@@ -31,7 +31,7 @@ impl TileList {
     /// The name of a pass over the list.
     pub(super) fn pass_name(self, pass: &str) -> String {
         let suffix = if self == TileList::Crowded { "-crowded" } else { "" };
-        format!("caustics/photons/{pass}{suffix}")
+        format!("caustics/photons/splat/{pass}{suffix}")
     }
 }
 
@@ -72,8 +72,8 @@ pub(super) struct Splat<'a> {
 impl Splat<'_> {
     /// What both ways start with: `start`, `project`, `touch`.
     pub(super) fn declare_start(&self, graph: &mut Graph<'_>) {
-        graph.fill_buffer("caustics/photons/clear-counts", self.cell_counts, 0);
-        graph.fill_buffer("caustics/photons/clear-peaks", self.cell_peaks, 0);
+        graph.fill_buffer("caustics/photons/splat/clear-counts", self.cell_counts, 0);
+        graph.fill_buffer("caustics/photons/splat/clear-peaks", self.cell_peaks, 0);
         let (grid, stage) = (&self.grid, self.landed.stage as u32);
         let blocks = grid.tiles().map(|tiles| tiles.div_ceil(8));
         let pass = Start {
@@ -81,7 +81,7 @@ impl Splat<'_> {
             state: self.state.write(),
             push: StartPush { stage, row_count: grid.row_count, blocks },
         };
-        graph.pass("caustics/photons/splat-start", pass).groups([1, 1, 1]);
+        graph.pass("caustics/photons/splat/start", pass).groups([1, 1, 1]);
 
         let pass = Project {
             splat: self.group(TileList::Ordinary),
@@ -104,7 +104,7 @@ impl Splat<'_> {
         };
         let first = STAGE_WORDS * self.landed.stage;
         graph
-            .pass("caustics/photons/project", pass)
+            .pass("caustics/photons/splat/project", pass)
             .count("photons", self.landed.counts, first + COUNT_WORD)
             .threads_indirect(self.landed.counts, first + DISPATCH_WORD);
 
@@ -123,7 +123,7 @@ impl Splat<'_> {
             },
         };
         graph
-            .pass("caustics/photons/touch", pass)
+            .pass("caustics/photons/splat/touch", pass)
             .count("tiles", self.state, TileList::Ordinary.word() + 3)
             .count("crowded tiles", self.state, TileList::Crowded.word() + 3)
             .threads_indirect(self.state, BLOCKS_WORD);

@@ -22,7 +22,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let (centers, normals, irradiances) = (sorted("centers"), sorted("normals"), sorted("irradiances"));
     let squeezes = sorted("squeezes");
 
-    graph.fill_buffer("caustics/photons/clear-sorted", sorted_count, 0);
+    graph.fill_buffer("caustics/photons/splat/clear-sorted", sorted_count, 0);
     let pass = Scan {
         splat: splat.group(TileList::Ordinary),
         cell_counts: splat.cell_counts.texels(WORDS),
@@ -30,7 +30,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_count: sorted_count.read_write(),
         push: ScanPush { row_count: grid.row_count },
     };
-    graph.pass("caustics/photons/scan", pass).threads_indirect(splat.state, ROWS_WORD);
+    graph.pass("caustics/photons/splat/scan", pass).threads_indirect(splat.state, ROWS_WORD);
 
     let pass = Scatter {
         counts: landed.counts.texels(WORDS),
@@ -44,7 +44,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         push: ScatterPush { stage: landed.stage as u32, tolerance: splat.tolerance },
     };
     graph
-        .pass("caustics/photons/sort", pass)
+        .pass("caustics/photons/splat/sort", pass)
         .count("photons in view", sorted_count, 0)
         .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
 

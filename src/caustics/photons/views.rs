@@ -43,7 +43,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     };
     let list = draw_list(data, Attributes::Plain, &views, plain);
     graph
-        .raster("caustics/photons/views", pass, over_depth(Attributes::Plain, data))
+        .raster("caustics/photons/choose/views", pass, over_depth(Attributes::Plain, data))
         .depth_test(lights.depth)
         .color_fresh(made.surface)
         .color_fresh(made.layer)
@@ -52,7 +52,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
 
     let textured = |drawn: &DrawnInstance| drawn.specular && drawn.textured;
     if !data.drawn.iter().any(textured) {
-        graph.skip("caustics/photons/views-textured", "no textured specular surface");
+        graph.skip("caustics/photons/choose/views-textured", "no textured specular surface");
         return made;
     }
     let pass = SpecularTextured {
@@ -63,7 +63,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     };
     let list = draw_list(data, Attributes::Textured, &views, textured);
     graph
-        .raster("caustics/photons/views-textured", pass, over_depth(Attributes::Textured, data))
+        .raster("caustics/photons/choose/views-textured", pass, over_depth(Attributes::Textured, data))
         .depth_test(lights.depth)
         .color(made.surface, None)
         .color(made.layer, None)

@@ -45,8 +45,8 @@ pub(super) fn gather_pixels(
 ) {
     let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let [width, height] = buffer.size;
-    graph.clear_image("diffuse/vpl/clear", diffuse, BLACK);
-    for (name, range) in ranges("diffuse/vpl/gather-pixels", vpl_count(vpls), visibility) {
+    graph.clear_image("diffuse/vpl/gather/clear", diffuse, BLACK);
+    for (name, range) in ranges("diffuse/vpl/gather/pixels", vpl_count(vpls), visibility) {
         let terms = u64::from(width) * u64::from(height) * u64::from((range.end - range.first).cast_unsigned());
         let pass = GatherPixels {
             surface: buffer.group.clone(),
@@ -73,8 +73,8 @@ pub(super) fn gather_list(
 ) -> ImageRef {
     let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let irradiance = flattened(graph, buffer.size);
-    graph.clear_image("diffuse/vpl/clear-irradiance", irradiance, BLACK);
-    for (name, range) in ranges("diffuse/vpl/gather-regions", vpl_count(vpls), visibility) {
+    graph.clear_image("diffuse/vpl/gather/clear-irradiance", irradiance, BLACK);
+    for (name, range) in ranges("diffuse/vpl/gather/regions", vpl_count(vpls), visibility) {
         let pass = GatherRegions {
             surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),
@@ -106,8 +106,8 @@ pub(super) fn gather_stencil(
     let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
-    graph.fill_buffer("diffuse/vpl/clear-invocations", invocations, 0);
-    for (name, range) in ranges("diffuse/vpl/gather-stencil", vpl_count(vpls), visibility) {
+    graph.fill_buffer("diffuse/vpl/gather/clear-invocations", invocations, 0);
+    for (name, range) in ranges("diffuse/vpl/gather/stencil", vpl_count(vpls), visibility) {
         let pass = GatherStencil {
             surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),

@@ -28,7 +28,7 @@ pub(crate) fn interpolate(
             push: InterpolatePush { size: signed(size), level: level.cast_signed(), depth_threshold, normal_threshold },
         };
         let regions = size.map(|side| side >> (level + 1));
-        graph.pass(&format!("diffuse/vpl/interpolate-{}", 1 << level), pass).pixels(regions);
+        graph.pass(&format!("diffuse/vpl/interpolate/squares-{}", 1 << level), pass).pixels(regions);
     }
     let pass = Resolve {
         surface: buffer.group.clone(),
@@ -37,5 +37,5 @@ pub(crate) fn interpolate(
         diffuse: diffuse.write(),
         push: ResolvePush { depth_threshold, normal_threshold },
     };
-    graph.pass("diffuse/vpl/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
+    graph.pass("diffuse/vpl/interpolate/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
 }

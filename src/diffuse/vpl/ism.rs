@@ -72,7 +72,7 @@ pub(crate) fn imperfect_shadow_maps(
     let side = resolution_for(vpl_count, options);
     let count = |side: u32| vpl_count as usize * side as usize * side as usize;
     let drawn = graph.buffer::<u32>("ism.drawn", count(side));
-    graph.fill_buffer("diffuse/vpl/ism-clear", drawn, 0);
+    graph.fill_buffer("diffuse/vpl/visibility/ism-clear", drawn, 0);
     let pass = Splat {
         vpls: vpls.texels(FLOATS4),
         points: surfaces.points.texels(FLOATS4),
@@ -88,7 +88,7 @@ pub(crate) fn imperfect_shadow_maps(
     };
     let points = u64::from(vpl_count) * u64::from(surfaces.points_of_set);
     let rows = vpl_count.min(MOST_GROUPS);
-    graph.pass("diffuse/vpl/ism-splat", pass).note("points", points).groups([
+    graph.pass("diffuse/vpl/visibility/ism-splat", pass).note("points", points).groups([
         surfaces.points_of_set.div_ceil(64),
         rows,
         1,
@@ -107,7 +107,7 @@ pub(crate) fn imperfect_shadow_maps(
         let coarse = levels[level - 1].write();
         let push = PullPush { vpl_count, fine_side, coarse_side };
         let pass = Pull { fine, coarse, from_drawn: u32::from(level == 1), push };
-        graph.pass(&format!("diffuse/vpl/ism-pull-{level}"), pass).groups(groups(coarse_side));
+        graph.pass(&format!("diffuse/vpl/visibility/ism-pull-{level}"), pass).groups(groups(coarse_side));
     }
     let mut coarse = levels[levels.len() - 1];
     for level in (1..sides.len() - 1).rev() {
@@ -119,7 +119,7 @@ pub(crate) fn imperfect_shadow_maps(
             pushed: pushed.write(),
             push,
         };
-        graph.pass(&format!("diffuse/vpl/ism-push-{level}"), pass).groups(groups(sides[level]));
+        graph.pass(&format!("diffuse/vpl/visibility/ism-push-{level}"), pass).groups(groups(sides[level]));
         coarse = pushed;
     }
     let maps = graph.buffer::<f32>("ism.maps", count(side));
@@ -131,7 +131,7 @@ pub(crate) fn imperfect_shadow_maps(
         maps: maps.write(),
         push: FillPush { vpl_count, side, coarse_side: sides[1], points_of_set, block_count },
     };
-    graph.pass("diffuse/vpl/ism-fill", pass).groups(groups(side));
+    graph.pass("diffuse/vpl/visibility/ism-fill", pass).groups(groups(side));
     ImperfectShadowMaps { maps, resolution: side }
 }
 
@@ -159,10 +159,10 @@ fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, 
         push: AreasPush { instance_count, triangle_count, block_count },
     };
     let groups = [block_count.min(MOST_GROUPS), 1, 1];
-    graph.pass("diffuse/vpl/ism-areas", pass).note("triangles", u64::from(triangle_count)).groups(groups);
+    graph.pass("diffuse/vpl/visibility/ism-areas", pass).note("triangles", u64::from(triangle_count)).groups(groups);
     let pass =
         Scan { block_areas: block_areas.read(), area_before: area_before.write(), push: ScanPush { block_count } };
-    graph.pass("diffuse/vpl/ism-scan", pass).groups([1, 1, 1]);
+    graph.pass("diffuse/vpl/visibility/ism-scan", pass).groups([1, 1, 1]);
     let pass = Points {
         geometry: geometry.clone(),
         first_triangles: first_triangles.texels(vk::Format::R32_UINT),
@@ -172,6 +172,6 @@ fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, 
         push: PointsPush { instance_count, triangle_count, block_count, points_of_set, set_count },
     };
     let all = points_of_set * set_count;
-    graph.pass("diffuse/vpl/ism-points", pass).note("points", u64::from(all)).threads([all, 1, 1]);
+    graph.pass("diffuse/vpl/visibility/ism-points", pass).note("points", u64::from(all)).threads([all, 1, 1]);
     SurfacePoints { points, area_before, block_count, points_of_set, set_count }
 }

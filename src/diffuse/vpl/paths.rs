@@ -41,7 +41,7 @@ pub(super) fn with_bounces(
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
     let texel_count = 2 * counts[0];
     let pass = Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.write(), push: CopyPush { texel_count } };
-    graph.pass("diffuse/vpl/copy", pass).threads([texel_count, 1, 1]);
+    graph.pass("diffuse/vpl/paths/copy", pass).threads([texel_count, 1, 1]);
 
     let mut parents = 0;
     for (number, pair) in (2..).zip(counts.windows(2)) {
@@ -56,7 +56,7 @@ pub(super) fn with_bounces(
             hits: hits.write(),
             push: PathHitsPush { bounce },
         };
-        let name = format!("diffuse/vpl/path-hits-{number}");
+        let name = format!("diffuse/vpl/paths/hits-{number}");
         graph.pass(&name, pass).note("rays", u64::from(child_count)).threads([child_count, 1, 1]);
         let pass = PathVpls {
             hits: hits.texels(FLOATS),
@@ -65,7 +65,7 @@ pub(super) fn with_bounces(
             vpls: vpls.read_write(),
             push: PathVplsPush { bounce },
         };
-        let name = format!("diffuse/vpl/path-vpls-{number}");
+        let name = format!("diffuse/vpl/paths/vpls-{number}");
         graph.pass(&name, pass).note("VPLs", u64::from(child_count)).threads([child_count, 1, 1]);
         parents = children;
     }

@@ -55,7 +55,7 @@ pub(crate) fn pyramid(
     // Every region holds a pixel of its own.
     let capacity = if group_regions.is_some() { size[0] as usize * size[1] as usize } else { 0 };
     let list = graph.buffer::<u32>("vpl.list", LIST_HEADER + capacity);
-    graph.fill_buffer("diffuse/vpl/clear-list", list, 0);
+    graph.fill_buffer("diffuse/vpl/regions/clear-list", list, 0);
     let (lists, group_regions) = (u32::from(group_regions.is_some()), group_regions.unwrap_or(1));
     let pass = FirstRegions {
         surface: buffer.group.clone(),
@@ -71,7 +71,7 @@ pub(crate) fn pyramid(
             normal_threshold,
         },
     };
-    graph.pass("diffuse/vpl/regions-2", pass).pixels(size.map(|side| side.div_ceil(2)));
+    graph.pass("diffuse/vpl/regions/squares-2", pass).pixels(size.map(|side| side.div_ceil(2)));
     for level in 2..level_count {
         let pass = LargerRegions {
             surface: buffer.group.clone(),
@@ -92,7 +92,7 @@ pub(crate) fn pyramid(
         };
         // Those that the image cuts off too: their quarters may be valid.
         let regions = size.map(|side| (side >> (level - 1)).div_ceil(2));
-        graph.pass(&format!("diffuse/vpl/regions-{}", 1 << level), pass).pixels(regions);
+        graph.pass(&format!("diffuse/vpl/regions/squares-{}", 1 << level), pass).pixels(regions);
     }
     Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
 }

@@ -29,6 +29,6 @@ pub(super) fn mark(cx: &mut FrameCx<'_, '_>, pyramid: &Pyramid) -> ImageRef {
     let marks = StencilState { compare: vk::CompareOp::ALWAYS, pass: vk::StencilOp::REPLACE, reference: VALID };
     let state =
         RasterState { topology: vk::PrimitiveTopology::TRIANGLE_LIST, stencil: Some(marks), ..RasterState::default() };
-    graph.raster("diffuse/vpl/mark", pass, state).stencil(stencil, Some(0)).vertices(3, 1);
+    graph.raster("diffuse/vpl/regions/mark", pass, state).stencil(stencil, Some(0)).vertices(3, 1);
     stencil
 }

@@ -33,7 +33,7 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
         blocks: blocks.write(),
         push: BlockFluxPush { tile_count },
     };
-    graph.pass("diffuse/vpl/block-flux", pass).note("tiles", u64::from(tile_count)).threads([
+    graph.pass("diffuse/vpl/vpls/block-flux", pass).note("tiles", u64::from(tile_count)).threads([
         tile_count * BLOCKS_PER_TILE,
         1,
         1,
@@ -45,14 +45,14 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
         sums: sums.write_then_read(),
         view_fluxes: view_fluxes.write(),
     };
-    graph.pass("diffuse/vpl/block-sums", pass).groups([view_count, 1, 1]);
+    graph.pass("diffuse/vpl/vpls/block-sums", pass).groups([view_count, 1, 1]);
 
     let pass = Share {
         view_fluxes: view_fluxes.read(),
         shares: shares.write_then_read(),
         push: SharePush { view_count, vpl_count },
     };
-    graph.pass("diffuse/vpl/share", pass).note("views", u64::from(view_count)).groups([1, 1, 1]);
+    graph.pass("diffuse/vpl/vpls/share", pass).note("views", u64::from(view_count)).groups([1, 1, 1]);
 
     let pass = Vpls {
         light_views: lights.group.clone(),
@@ -61,7 +61,7 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
         vpls: vpls.write(),
         push: VplsPush { view_count, vpl_count },
     };
-    graph.pass("diffuse/vpl/vpls", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
+    graph.pass("diffuse/vpl/vpls/place", pass).note("VPLs", u64::from(vpl_count)).threads([vpl_count, 1, 1]);
     vpls
 }
 

@@ -52,15 +52,15 @@ impl Method for Traced {
         let frame = TracedFrame { buffer: cx.frame.surface, scene, rays, lights, shift, samples: options.samples };
         let mut direct = None;
         match (scene.punctual_count == 0).then_some("no punctual light") {
-            Some(reason) => graph.skip("direct/punctual", reason),
+            Some(reason) => graph.skip("direct/traced/punctual", reason),
             None => direct = Some(frame.punctual(graph, direct)),
         }
         match wanted((!emissive).then_some("no emissive surface")) {
-            Some(reason) => graph.skip("direct/emitters", reason),
+            Some(reason) => graph.skip("direct/traced/emitters", reason),
             None => direct = Some(frame.emitters(graph, direct)),
         }
         match wanted((!sky && !emissive).then_some("no sky, no emissive surface")) {
-            Some(reason) => graph.skip("direct/directions", reason),
+            Some(reason) => graph.skip("direct/traced/directions", reason),
             None => direct = Some(frame.directions(graph, direct)),
         }
         Ok(direct)
@@ -95,7 +95,7 @@ impl TracedFrame<'_> {
             adds: u32::from(found.is_some()),
             push: PunctualPush { shift: self.shift, light_count },
         };
-        graph.pass("direct/punctual", pass).note("lights", u64::from(light_count)).pixels(self.buffer.size);
+        graph.pass("direct/traced/punctual", pass).note("lights", u64::from(light_count)).pixels(self.buffer.size);
         direct
     }
 
@@ -117,7 +117,7 @@ impl TracedFrame<'_> {
                 density_scale: self.scene.emissive_density_scale,
             },
         };
-        graph.pass("direct/emitters", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
+        graph.pass("direct/traced/emitters", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
         direct
     }
 
@@ -140,7 +140,7 @@ impl TracedFrame<'_> {
                 density_scale: self.scene.emissive_density_scale,
             },
         };
-        graph.pass("direct/directions", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
+        graph.pass("direct/traced/directions", pass).note("samples", u64::from(self.samples)).pixels(self.buffer.size);
         direct
     }
 }
