@@ -44,7 +44,10 @@ impl Method for ShadowMap {
                 filter_radius: i32::try_from(options.filter_radius).unwrap_or(0),
             },
         };
-        cx.graph.pass("direct/shadow-map/shade", pass).note("lights", u64::from(lights.light_count)).pixels(buffer.size);
+        cx.graph
+            .pass("direct/shadow-map/shade", pass)
+            .note("lights", u64::from(lights.light_count))
+            .pixels(buffer.size);
         Ok(Some(direct))
     }
 }
