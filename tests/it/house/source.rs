@@ -44,7 +44,7 @@ impl Tree {
     /// The same of files given by path and text.
     pub(crate) fn of(files: impl IntoIterator<Item = (PathBuf, String)>) -> Tree {
         let is_test = |path: &Path| {
-            path.iter().any(|part| ["tests", "tests.rs", "gpu_tests", "twins.rs"].contains(&&*part.to_string_lossy()))
+            path.iter().any(|part| ["tests", "tests.rs", "gpu_tests", "twins"].contains(&&*part.to_string_lossy()))
         };
         let files = files.into_iter().filter(|(path, _)| !is_test(path));
         Tree { modules: files.map(|(path, text)| (module_of(&path), File::new(path, &text))).collect() }
