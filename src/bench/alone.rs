@@ -16,9 +16,12 @@ pub(crate) fn repeated(piece: &str, repetitions: &[Repetition], in_frame_ms: Spr
     summed(piece, &passes, &whole, in_frame_ms)
 }
 
+/// Passes by their full names, each with its time in every repetition.
+type Rows = Vec<(String, Vec<f64>)>;
+
 fn summed(piece: &str, repetitions: &[&FrameTimings], whole: &[f64], in_frame_ms: Spread) -> PieceAlone {
     let mut of_piece = vec![0.0; repetitions.len()];
-    let (mut own, mut others): (Vec<(String, Vec<f64>)>, Vec<(String, Vec<f64>)>) = Default::default();
+    let (mut own, mut others) = (Rows::new(), Rows::new());
     for (round, timings) in repetitions.iter().enumerate() {
         for pass in timings.passes.iter().filter(|pass| pass.skipped.is_none()) {
             let (name, ms) = (pass.full_name(), pass.ms.unwrap_or_default());
@@ -35,9 +38,7 @@ fn summed(piece: &str, repetitions: &[&FrameTimings], whole: &[f64], in_frame_ms
         }
     }
     let spread = |ms: &[f64]| Spread::of(ms).unwrap_or_default();
-    let finish = |rows: Vec<(String, Vec<f64>)>| {
-        rows.into_iter().map(|(pass, ms)| PassAlone { pass, ms: spread(&ms) }).collect()
-    };
+    let finish = |rows: Rows| rows.into_iter().map(|(pass, ms)| PassAlone { pass, ms: spread(&ms) }).collect();
     PieceAlone {
         piece: piece.to_owned(),
         ms: spread(&of_piece),

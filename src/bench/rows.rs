@@ -183,11 +183,11 @@ fn alone_row(alone: &PieceAlone) -> Row {
         return Row { skipped: true, ..row.text(reason) };
     }
     let [in_frame, whole] = [alone.in_frame_ms, alone.whole_ms].map(|ms| units::milliseconds(ms.median));
-    let mut text = format!("{in_frame} ms within the serialised frame; {whole} ms if its passes overlap");
+    let mut text = format!("{in_frame} ms within the serialised frame; {whole} ms if passes overlap");
     if !alone.also.is_empty() {
         let names: Vec<&str> = alone.also.iter().map(|row| row.pass.as_str()).collect();
         let ms = units::milliseconds(alone.also.iter().map(|row| row.ms.median).sum());
-        text += &format!(", {ms} ms of them more: interleaves with {}, repeated with it", names.join(", "));
+        text += &format!("; interleaves with {}, which are repeated with it, {ms} ms more", names.join(", "));
     }
     row.spread(alone.ms).text(text)
 }
@@ -223,6 +223,7 @@ fn plain(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::report::PassAlone;
     use crate::bench::samples::tests::example_run;
 
     #[test]
@@ -272,6 +273,26 @@ mod tests {
         ];
         assert_eq!(labels[..7], expected.map(|(kind, label)| (kind, label.to_owned())));
         assert_eq!(rows[2].name, "caustics/photons/lists/clear");
+    }
+
+    #[test]
+    fn a_piece_alone_names_what_had_to_be_repeated_with_it() {
+        let ms = |ms: f64| Spread { min: ms, median: ms, p95: ms };
+        let piece = "caustics/photons/trace".to_owned();
+        let (ms_alone, in_frame_ms, whole_ms) = (ms(4.0), ms(5.0), ms(3.5));
+        let also = vec![PassAlone { pass: "caustics/photons/choose/list".to_owned(), ms: ms(0.25) }];
+        let alone = PieceAlone { piece, ms: ms_alone, in_frame_ms, whole_ms, also, ..PieceAlone::default() };
+        let skipped = PieceAlone { skipped: Some("no light".to_owned()), ..alone.clone() };
+        let rows = rows(&Run { piece_alone: vec![alone, skipped], ..Run::default() });
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.kind == RowKind::Alone).collect();
+        let [alone, skipped] = rows[..] else { panic!("{} rows", rows.len()) };
+        assert_eq!((alone.label(), alone.ms), ("caustics/photons/trace alone".to_owned(), Some(4.0)));
+        for words in
+            ["5.000 ms within", "3.500 ms if", "interleaves with caustics/photons/choose/list", "0.250 ms more"]
+        {
+            assert!(alone.text.contains(words), "{words} is not in {}", alone.text);
+        }
+        assert_eq!((skipped.skipped, &*skipped.text, skipped.ms), (true, "no light", None));
     }
 
     #[test]
