@@ -36,7 +36,7 @@ fn photon_source(session: &Session, scene: &Scene, request: &EstimateRequest) ->
 
 fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, passes: u32) -> SlotSums {
     let request = request(SIZE, camera.clone(), bounces);
-    let mut source = photon_source(&session, scene, &request);
+    let mut source = photon_source(session, scene, &request);
     source.sums(0, 0, passes).expect("sums")
 }
 

@@ -11,6 +11,9 @@ use crate::scene::Facts;
 use crate::slot::{LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Device, VulkanError};
 
+/// Declares a method's passes with its options out of all settings.
+type Declare = fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>;
+
 /// A method, with its options taken from all settings.
 pub(crate) struct MethodEntry {
     pub(crate) slot: Slot,
@@ -18,7 +21,7 @@ pub(crate) struct MethodEntry {
     pub(crate) light_paths: fn(&Settings) -> LightPaths,
     pub(crate) inputs: fn(&Settings) -> Inputs,
     pub(crate) skip: fn(&Settings, &Facts) -> Option<&'static str>,
-    pub(crate) declare: fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>,
+    pub(crate) declare: Declare,
 }
 
 /// An estimator, likewise.
