@@ -4,8 +4,7 @@
 #include "photon_splat/levels.glsl"
 
 // One group turns the counts of a row of cells into where each cell's photons start in the sorted list. Rows stand in it in any order, the
-// cells of a row side by side, so that a stretch of a row is one run of photons. Each invocation sums a run of cells, the group
-// scans the 64 sums (Hillis & Steele 1986), each invocation walks its run again.
+// cells of a row side by side, so that a stretch of a row is one run of photons.
 
 layout(local_size_x = 64) in;
 
@@ -15,8 +14,20 @@ layout(set = 0, binding = 2) buffer SortedBlock { uint sorted_count[]; };
 
 layout(push_constant, scalar) uniform Push { uint row_count; } push;
 
-shared uint sums[64];
 shared uint row_start;
+int first_cell;  // of the row
+
+#define SCAN_TYPE uint
+
+uint scan_term(uint cell) {
+    return texelFetch(cell_counts, first_cell + int(cell)).x;
+}
+
+void scan_store(uint cell, uint before) {
+    cell_starts[first_cell + int(cell)] = before;
+}
+
+#include "lib/prefix_scan.glsl"
 
 void scan_row(int row) {
     int level = 0;
@@ -26,35 +37,15 @@ void scan_row(int row) {
         ++level;
         cells = texelFetch(splat_levels, level);
     }
-    int self = int(gl_LocalInvocationIndex);
-    int run = (int(cells.x) + 63) / 64;
-    int base = cell_index(ivec2(0, row), cells);
-    int first = base + min(self * run, int(cells.x));
-    int end = base + min((self + 1) * run, int(cells.x));
-    uint sum = 0u;
-    for (int cell = first; cell < end; ++cell) {
-        sum += texelFetch(cell_counts, cell).x;
-    }
-    sums[self] = sum;
-    barrier();
-    [[dont_unroll]] for (int stride = 1; stride < 64; stride *= 2) {
-        uint lower = self >= stride ? sums[self - stride] : 0u;
-        barrier();
-        sums[self] += lower;
-        barrier();
-    }
-    if (self == 63) {
-        row_start = sums[63] > 0u ? atomicAdd(sorted_count[0], sums[63]) : 0u;
+    first_cell = cell_index(ivec2(0, row), cells);
+    uint before = scan_sum_before_run(cells.x);
+    if (gl_LocalInvocationIndex == 0u) {
+        uint total = scan_total();
+        row_start = total > 0u ? atomicAdd(sorted_count[0], total) : 0u;
+        scan_store(cells.x, row_start + total);
     }
     barrier();
-    uint before = row_start + (self > 0 ? sums[self - 1] : 0u);
-    for (int cell = first; cell < end; ++cell) {
-        cell_starts[cell] = before;
-        before += texelFetch(cell_counts, cell).x;
-    }
-    if (self == 63) {
-        cell_starts[base + int(cells.x)] = row_start + sums[63];
-    }
+    scan_store_run(cells.x, row_start + before);
     barrier();
 }
 

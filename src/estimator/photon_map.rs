@@ -120,7 +120,7 @@ impl PhotonMap {
         let scan = shaders::Scan {
             bucket_counts: self.bucket_counts.texels(WORD),
             bucket_starts: self.bucket_starts.write(),
-            push: shaders::ScanPush { bucket_count: 1 << (3 * self.bits), reserved: 0 },
+            push: shaders::ScanPush { bucket_count: 1 << (3 * self.bits) },
         };
         graph.pass("sppm/scan", scan).groups([1, 1, 1]);
         let sort = shaders::Sort {
