@@ -3,8 +3,7 @@
 #ifndef PATH_QUEUE
 #define PATH_QUEUE
 
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
+#include "lib/append.glsl"
 
 const uint QUEUE_HEADER = 4u;
 const uint NO_PATH = 0xFFFFFFFFu;
@@ -19,19 +18,16 @@ uint queued_path(usamplerBuffer queue) {
     return index < queue_count(queue) ? texelFetch(queue, int(QUEUE_HEADER + index)).x : NO_PATH;
 }
 
-// Appends `path` to the storage buffer `queue` if `wanted`; all invocations of the subgroup must come here. One atomic a subgroup.
+// One place in a queue, `queue[3]` of which is the count, for each invocation that has one `wanted` (lib/append.glsl).
+#define QUEUE_PLACE(queue, wanted, place) APPEND(queue[3], wanted, place, atomicMax(queue[0], (new_length + 63u) / 64u))
+
+// Appends `path` to the storage buffer `queue` if `wanted`.
 #define APPEND_TO_QUEUE(queue, path, wanted)                                                                     \
     {                                                                                                            \
-        uvec4 voters = subgroupBallot(wanted);                                                                   \
-        uint voter_count = subgroupBallotBitCount(voters);                                                       \
-        uint first = 0u;                                                                                         \
-        if (subgroupElect() && voter_count > 0u) {                                                               \
-            first = atomicAdd(queue[3], voter_count);                                                            \
-            atomicMax(queue[0], (first + voter_count + 63u) / 64u);                                              \
-        }                                                                                                        \
-        first = subgroupBroadcastFirst(first);                                                                   \
+        uint in_queue;                                                                                           \
+        QUEUE_PLACE(queue, wanted, in_queue)                                                                     \
         if (wanted) {                                                                                            \
-            queue[QUEUE_HEADER + first + subgroupBallotExclusiveBitCount(voters)] = path;                        \
+            queue[QUEUE_HEADER + in_queue] = path;                                                               \
         }                                                                                                        \
     }
 

@@ -1,18 +1,12 @@
-// Places at the end of a list for some invocations of a subgroup, by one atomic addition. `counts` holds STAGE_WORDS words a list
-// (photons/records.glsl), which follow what is appended. All invocations of the subgroup must come here. Sets the uint `place`.
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
+// Places in the lists of photons. `counts` holds STAGE_WORDS words a list (photons/records.glsl), which follow what is appended.
+#include "lib/append.glsl"
 
-#define APPEND(counts, stage, wanted, place)                                                                     \
+// One place in list `stage` for each invocation that has one `wanted` (lib/append.glsl).
+#define APPEND_TO_STAGE(counts, stage, wanted, place)                                                            \
     {                                                                                                            \
-        uvec4 voters = subgroupBallot(wanted);                                                                   \
-        uint voter_count = subgroupBallotBitCount(voters);                                                       \
-        uint first = 0u;                                                                                         \
-        if (subgroupElect() && voter_count > 0u) {                                                               \
-            uint head = (stage) * STAGE_WORDS;                                                                   \
-            first = atomicAdd(counts[head + COUNT_WORD], voter_count);                                           \
-            atomicMax(counts[head], (first + voter_count + 63u) / 64u);                                          \
-            atomicMax(counts[head + DRAW_WORD + 1u], first + voter_count);                                       \
-        }                                                                                                        \
-        place = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(voters);                         \
+        uint head = (stage) * STAGE_WORDS;                                                                       \
+        APPEND(counts[head + COUNT_WORD], wanted, place, {                                                       \
+            atomicMax(counts[head], (new_length + 63u) / 64u);                                                   \
+            atomicMax(counts[head + DRAW_WORD + 1u], new_length);                                                \
+        })                                                                                                       \
     }

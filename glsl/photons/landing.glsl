@@ -96,7 +96,7 @@ void land(bool met, Landing landing, MaterialPoint point) {
     bool carries = met && max3(photon.flux) > 0.0;
     bool lands = carries && (landing.may_diffuse || max3(lobes.diffuse_albedo) > 0.0);
     uint place;
-    APPEND(counts, push.landed_stage, lands, place)
+    APPEND_TO_STAGE(counts, push.landed_stage, lands, place)
     if (lands && place < push.landed_capacity) {
         Ellipse ellipse = footprint(landing);
         photons[2u * place] = uvec4(floatBitsToUint(photon.origin_rs), pack_direction(landing.normal));
@@ -108,7 +108,7 @@ void land(bool met, Landing landing, MaterialPoint point) {
     }
     vec3 transmission = unlit ? vec3(0.0) : point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
     bool goes_on = carries && max(max3(lobes.f0), max(lobes.f90, max3(transmission))) > 0.0;
-    APPEND(arrival_counts, push.stage + 1u, goes_on, place)
+    APPEND_TO_STAGE(arrival_counts, push.stage + 1u, goes_on, place)
     if (goes_on && place < push.capacity) {
         bool refracts = medium_of(material).is_closed && material.ior > 0.0 && max3(transmission) > 0.0;
         float relative_ior = !refracts ? 1.0 : landing.front ? material.ior : 1.0 / material.ior;

@@ -1,10 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "lib/append.glsl"
 #include "lib/pixels.glsl"
 #include "photons/choice.glsl"
-
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
 
 // Lists the blocks of the chosen level that are not empty: column and row in 16 bits each. One group looks at 32x32 of them, eight by eight;
 // the levels five and three above hold these squares as one block.
@@ -52,12 +50,8 @@ void main() {
         }
         ivec2 block = ivec2(square * 8u + in_square);
         bool taken = is_taken(level, block);
-        uvec4 voters = subgroupBallot(taken);
-        uint first = 0u;
-        if (subgroupElect()) {
-            first = atomicAdd(choice[CHOICE_LISTED], subgroupBallotBitCount(voters));
-        }
-        uint place = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(voters);
+        uint place;
+        APPEND(choice[CHOICE_LISTED], taken, place, {})
         if (taken && place < push.capacity) {
             blocks[place] = uint(block.y) << 16 | uint(block.x);
         }

@@ -128,7 +128,7 @@ void main() {
         wanted = scatter(photon, texelFetch(surfaces, 2 * int(index)), texelFetch(surfaces, 2 * int(index) + 1), index, beam);
     }
     uint place;
-    APPEND(counts, push.stage, wanted, place)
+    APPEND_TO_STAGE(counts, push.stage, wanted, place)
     if (wanted && place < push.capacity) {
         rays[3u * place] = uvec4(floatBitsToUint(photon.origin_rs), floatBitsToUint(photon.travelled));
         rays[3u * place + 1u] = uvec4(floatBitsToUint(photon.direction), photon.bits);

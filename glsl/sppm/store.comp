@@ -29,14 +29,8 @@ void main() {
         vertex = load_vertex(path_vertices, path);
         wanted = max3(vertex.matter.diffuse_albedo) > 0.0;
     }
-    uvec4 voters = subgroupBallot(wanted);
-    uint voter_count = subgroupBallotBitCount(voters);
-    uint first = 0u;
-    if (subgroupElect() && voter_count > 0u) {
-        first = atomicAdd(photon_queue[3], voter_count);
-        atomicMax(photon_queue[0], (first + voter_count + 63u) / 64u);
-    }
-    first = subgroupBroadcastFirst(first);
+    uint place;
+    QUEUE_PLACE(photon_queue, wanted, place)
     if (wanted) {
         vec3 to_light = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
         vec3 flux = texelFetch(path_states, int(path)).rgb;
@@ -47,7 +41,7 @@ void main() {
         uint bucket = bucket_of(ivec3(floor(vertex.position_rs * push.inverse_cell)), push.bits);
         uint specular = (texelFetch(path_flags, int(path)).x & FLAG_LAST_SPECULAR) != 0u ? 1u : 0u;
         float cosine = max(abs(dot(vertex.geometric_normal, to_light)), 1e-6);
-        uint texel = uint(PHOTON_TEXELS) * (first + subgroupBallotExclusiveBitCount(voters));
+        uint texel = uint(PHOTON_TEXELS) * place;
         photons[texel] = uvec4(floatBitsToUint(vertex.position_rs), bucket);
         photons[texel + 1u] = uvec4(floatBitsToUint(flux), pack_direction(to_light));
         photons[texel + 2u] = uvec4(pack_direction(vertex.geometric_normal), push.depth, specular, floatBitsToUint(cosine));

@@ -4,9 +4,9 @@
 //
 // A region is valid if it is flat but the next larger one is not: whoever merges four quarters into a region knows both.
 
-#extension GL_KHR_shader_subgroup_basic : require
+#include "lib/append.glsl"
+
 #extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_ballot : require
 
 layout(set = 0, binding = 0) buffer List { uint list[]; };
 
@@ -16,22 +16,21 @@ layout(constant_id = 1) const uint GROUP_REGIONS = 1u;  // regions that one grou
 const uint LIST_HEADER = 4u;
 const uint ROW_GROUPS = 32768u;
 
-// All invocations of the subgroup must come here: one atomic a subgroup. Bit i of `valid`: quarter i of the region, bit 4: the region itself.
+// All invocations of the group must come here. Bit i of `valid`: quarter i of the region, bit 4: the region itself.
 void append_regions(uint valid, ivec2 size, int level, ivec2 cell) {
     if (gl_GlobalInvocationID == uvec3(0u)) {
         list[2] = 1u;
     }
     uint count = uint(bitCount(valid));
-    uint place = subgroupExclusiveAdd(count);
+    uint before = subgroupExclusiveAdd(count);
     uint total = subgroupAdd(count);
-    uint first = 0u;
-    if (subgroupElect() && total > 0u) {
-        first = atomicAdd(list[3], total);
-        uint groups = (first + total + GROUP_REGIONS - 1u) / GROUP_REGIONS;
+    uint place;
+    APPEND_SEVERAL(list[3], before, total, place, {
+        uint groups = (new_length + GROUP_REGIONS - 1u) / GROUP_REGIONS;
         atomicMax(list[0], min(groups, ROW_GROUPS));
         atomicMax(list[1], (groups + ROW_GROUPS - 1u) / ROW_GROUPS);
-    }
-    place += LIST_HEADER + subgroupBroadcastFirst(first);
+    })
+    place += LIST_HEADER;
     for (int i = 0; i < 5; ++i) {
         if ((valid >> i & 1u) != 0u) {
             ivec2 texel = i == 4 ? place_of_level(size, level) + cell
