@@ -14,7 +14,7 @@ layout(constant_id = 1) const uint ALPHA_MASK = 0u;
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
 layout(location = 2) flat in uint instance_index;
-layout(location = 3) in vec4 texcoord_sets;
+layout(location = 4) in vec4 texcoord_sets;
 
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);

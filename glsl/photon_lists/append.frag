@@ -6,7 +6,7 @@
 // One fragment of an opaque primitive: a node of its texel's list, whatever lies before it.
 
 layout(location = 0) in float depth;
-layout(location = 1) flat in uint instance_index;
+layout(location = 2) flat in uint instance_index;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);

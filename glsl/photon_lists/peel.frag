@@ -5,7 +5,7 @@
 // One fragment of an opaque primitive in a pass of depth peeling (Everitt 2001; Krüger et al. 2006): it stands if it is behind the layer before.
 
 layout(location = 0) in float depth;
-layout(location = 1) flat in uint instance_index;
+layout(location = 2) flat in uint instance_index;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);

@@ -1,19 +1,16 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "photon_lists/masked.glsl"
+#include "geometry/masked.glsl"
 #include "photon_lists/peel.glsl"
 
 // One fragment of an alpha-masked primitive in a pass of depth peeling: it stands if it is no hole and behind the layer before.
 
 layout(location = 0) in float depth;
-layout(location = 1) flat in uint instance_index;
-layout(location = 2) in float vertex_alpha;
-layout(location = 3) in vec4 texcoord_sets;
 
 void main() {
     Instance instance = load_instance(instances, instance_index);
     vec3 normal = front_normal(instance, gl_PrimitiveID);
-    bool there = is_there(instance.material, vertex_alpha, texcoord_sets);
+    bool there = is_there(instance.material);
     if (!there || !is_next(depth) || !is_kept(normal)) {
         discard;
     }

@@ -4,7 +4,7 @@
 layout(location = 0) in vec3 position;
 
 layout(location = 0) out float depth;
-layout(location = 1) flat out uint instance_index;
+layout(location = 2) flat out uint instance_index;
 
 void main() {
     vec3 position_rs = vec4(position, 1.0) * load_transform(instances, gl_InstanceIndex);

@@ -1,20 +1,5 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "light_views/view.glsl"
+#include "light_views/vertex.glsl"
 
 // One vertex of a primitive without textures that has a specular lobe, drawn over a light view's depth: the same place to the bit.
-
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 5) in vec4 color;
-
-layout(location = 0) out vec3 vertex_normal;
-layout(location = 1) out vec4 vertex_color;
-layout(location = 2) flat out uint instance_index;
-
-void main() {
-    gl_Position = clip_position(position, gl_InstanceIndex);
-    vertex_normal = normal;
-    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
-    instance_index = gl_InstanceIndex;
-}

@@ -1,27 +1,15 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "geometry/vertex.glsl"
+#include "geometry/vertex_tangent.glsl"
+#include "geometry/vertex_texcoords.glsl"
 #include "light_views/view.glsl"
 
 // One vertex of a textured primitive that has a specular lobe, drawn over a light view's depth: the same place to the bit.
 
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 tangent;
-layout(location = 3) in vec2 texcoord0;
-layout(location = 4) in vec2 texcoord1;
-layout(location = 5) in vec4 color;
-
-layout(location = 0) out vec3 vertex_normal;
-layout(location = 1) out vec4 vertex_color;
-layout(location = 2) flat out uint instance_index;
-layout(location = 3) out vec4 vertex_tangent;
-layout(location = 4) out vec4 texcoords;
-
 void main() {
     gl_Position = clip_position(position, gl_InstanceIndex);
-    vertex_normal = normal;
-    vertex_color = (load_instance(instances, gl_InstanceIndex).flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
-    instance_index = gl_InstanceIndex;
-    vertex_tangent = tangent;
-    texcoords = vec4(texcoord0, texcoord1);
+    write_vertex();
+    write_tangent();
+    write_texcoords();
 }

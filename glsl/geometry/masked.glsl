@@ -2,7 +2,11 @@
 #include "groups/geometry.glsl"
 #include "geometry/material_textures.glsl"
 
-bool is_there(uint material_index, float vertex_alpha, vec4 texcoord_sets) {
+layout(location = 1) in float vertex_alpha;
+layout(location = 2) flat in uint instance_index;
+layout(location = 4) in vec4 texcoord_sets;
+
+bool is_there(uint material_index) {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
     Material material = load_material(drawn_materials, material_index);
     MaterialPoint point = material_factors(material, vec4(1.0, 1.0, 1.0, vertex_alpha));

@@ -1,0 +1,16 @@
+// A vertex of a primitive that is shaded, and what its fragments get of it.
+#include "groups/geometry.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 5) in vec4 color;
+
+layout(location = 0) out vec3 vertex_normal;
+layout(location = 1) out vec4 vertex_color;
+layout(location = 2) flat out uint instance_index;
+
+void write_vertex() {
+    vertex_normal = normal;
+    vertex_color = color_of_vertex(load_instance(instances, gl_InstanceIndex), color);
+    instance_index = gl_InstanceIndex;
+}
