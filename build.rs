@@ -1,7 +1,8 @@
 //! Compiles `glsl/` to SPIR-V and generates the typed Rust side of every program (`src/shaders.rs` includes it).
 //!
 //! `glsl/<piece>/<pass>.<stage>`; files of the same stem are the stages of one program. `glsl/lib/` holds includes, `glsl/groups/`
-//! those that declare bindings.
+//! those that declare bindings. A block of push constants is called `Push`; one of another name is one type for all programs that
+//! declare it.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};

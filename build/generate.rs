@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::groups::Group;
-use super::reflect::{Binding, BindingKind, Constant, ImageDim, Stage, Struct, Type, size_of};
+use super::reflect::{Binding, BindingKind, Constant, ImageDim, OWN_PUSH, Stage, Struct, Type, size_of};
 
 /// A stage of a program, its SPIR-V, and the file in `OUT_DIR` that holds it.
 pub(crate) struct CompiledStage {
@@ -172,14 +172,18 @@ fn write_program(
     if push_size > 128 {
         return Err(format!("its push constants take {push_size} bytes; every device offers 128"));
     }
-    if let Some(push) = &push {
+    let push_type = push.as_ref().map(|push| match &*push.name {
+        OWN_PUSH => format!("{name}Push"),
+        shared => format!("types::{shared}"),
+    });
+    if let Some(push) = push.as_ref().filter(|push| push.name == OWN_PUSH) {
         write_struct(out, &format!("{name}Push"), &push.fields, structs, &format!("Push constants of [`{name}`]."))?;
     }
     write_table(out, program, &name, &bindings, &constants, local_size, push_size);
-    let parts = Parts { groups, bindings: &bindings, constants: &constants, push: push.is_some() };
+    let parts = Parts { groups, bindings: &bindings, constants: &constants, push: push_type.as_deref() };
     write_bindings(out, &name, &program.summary, 0, &parts)?;
     if bindings.iter().any(|binding| binding.set == 1) {
-        let parts = Parts { groups: &[], constants: &[], push: false, ..parts };
+        let parts = Parts { groups: &[], constants: &[], push: None, ..parts };
         write_bindings(out, &format!("{name}Material"), "What a material binds for its draws.", 1, &parts)?;
     }
     Ok(())
@@ -237,7 +241,8 @@ struct Parts<'a> {
     groups: &'a [Group],
     bindings: &'a [Binding],
     constants: &'a [Constant],
-    push: bool,
+    /// The type of the push constants.
+    push: Option<&'a str>,
 }
 
 impl Parts<'_> {
@@ -277,8 +282,8 @@ fn write_bindings(out: &mut String, name: &str, summary: &str, set: u32, parts: 
         writeln!(out, "/// `glsl/groups/{0}.glsl`.\npub {0}: groups::{1},", group.name, camel(&group.name)).ok();
     }
     write_fields(out, own, &own_constants);
-    if parts.push {
-        writeln!(out, "/// Push constants.\npub push: {name}Push,").ok();
+    if let Some(push) = parts.push {
+        writeln!(out, "/// Push constants.\npub push: {push},").ok();
     }
     let table = screaming(name.strip_suffix("Material").filter(|_| set == 1).unwrap_or(name));
     writeln!(
@@ -293,7 +298,7 @@ fn write_bindings(out: &mut String, name: &str, summary: &str, set: u32, parts: 
         writeln!(out, "visitor({}, {place}.access());", binding.binding).ok();
     }
     out.push_str("}\nfn push_bytes(&self) -> &[u8] {\n");
-    out.push_str(if parts.push { "bytemuck::bytes_of(&self.push)\n" } else { "&[]\n" });
+    out.push_str(if parts.push.is_some() { "bytemuck::bytes_of(&self.push)\n" } else { "&[]\n" });
     out.push_str("}\nfn constants(&self) -> Vec<u32> {\nvec![");
     for constant in parts.constants {
         let place = parts.place(parts.group_of_constant(constant), &constant.name.to_lowercase());

@@ -96,6 +96,9 @@ enum RawType {
     Pointer { pointee: u32 },
 }
 
+/// The name of a block of push constants that belongs to one program. One of another name is a struct that programs share.
+pub(crate) const OWN_PUSH: &str = "Push";
+
 #[derive(Default)]
 struct Module {
     names: BTreeMap<u32, String>,
@@ -132,8 +135,12 @@ pub(crate) fn reflect(words: &[u32]) -> Result<Stage, String> {
         let Some(RawType::Pointer { pointee }) = module.types.get(&pointer) else { continue };
         match class {
             StorageClass::PushConstant => {
-                let fields = module.struct_fields(*pointee, &mut stage.structs)?;
-                stage.push = Some(Struct { name: String::new(), fields });
+                let name = module.name(*pointee)?;
+                let block = Struct { fields: module.struct_fields(*pointee, &mut stage.structs)?, name: name.clone() };
+                if name != OWN_PUSH {
+                    stage.structs.insert(name, block.clone());
+                }
+                stage.push = Some(block);
             }
             StorageClass::UniformConstant | StorageClass::Uniform | StorageClass::StorageBuffer => {
                 let binding = module.binding(id, *pointee, class, &mut stage.structs)?;

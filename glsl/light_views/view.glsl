@@ -4,7 +4,7 @@
 #include "groups/light_views.glsl"
 #include "lib/lights.glsl"
 
-layout(push_constant, scalar) uniform Push { uint view_index; } push;
+layout(push_constant, scalar) uniform DrawnLightView { uint view_index; } push;
 
 // Precise: every program computes the same bits, so that one may draw where the depth equals that of another.
 vec4 clip_position(vec3 position, uint instance) {

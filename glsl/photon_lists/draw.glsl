@@ -6,7 +6,7 @@
 #include "geometry/normals.glsl"
 #include "photon_lists/view.glsl"
 
-layout(push_constant, scalar) uniform Push {
+layout(push_constant, scalar) uniform DrawnListView {
     uint view_index;
     uint view_count;
     uint resolution;

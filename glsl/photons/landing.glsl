@@ -19,7 +19,7 @@
 #include "photons/surface_texel.glsl"
 #include "lib/brdf.glsl"
 
-layout(push_constant, scalar) uniform Push {
+layout(push_constant, scalar) uniform LandingStage {
     vec3 shift;          // from render space to that of the traced scene
     uint stage;
     uint goes_on;        // 0: no surface sends photons on from here

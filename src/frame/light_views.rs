@@ -87,7 +87,7 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
     let depth = light_views::Depth {
         geometry: geometry.clone(),
         light_views: made.group.clone(),
-        push: light_views::DepthPush { view_index: 0 },
+        push: types::DrawnLightView { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Depth, views, solid);
     let pass = graph.raster("light-views/depth", depth, Attributes::Depth.raster_state(data));
@@ -100,7 +100,7 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
         geometry: geometry.clone(),
         light_views: made.group.clone(),
         textures: data.texture_kinds(|drawn| !solid(drawn)),
-        push: light_views::DepthMaskedPush { view_index: 0 },
+        push: types::DrawnLightView { view_index: 0 },
     };
     let list = draw_list(data, Attributes::DepthMasked, views, |drawn| !solid(drawn));
     let pass = graph.raster("light-views/depth-masked", masked, Attributes::DepthMasked.raster_state(data));
@@ -118,7 +118,7 @@ fn draw_reflective(
     let plain = light_views::Reflective {
         geometry: geometry.clone(),
         light_views: made.group.clone(),
-        push: light_views::ReflectivePush { view_index: 0 },
+        push: types::DrawnLightView { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Plain, views, |drawn| !drawn.textured);
     let pass = graph.raster("light-views/reflective", plain, Attributes::Plain.raster_state(data));
@@ -142,7 +142,7 @@ fn draw_reflective(
             light_views: made.group.clone(),
             textures: data.texture_kinds(takes),
             alpha_mask: u32::from(masked),
-            push: light_views::ReflectiveTexturedPush { view_index: 0 },
+            push: types::DrawnLightView { view_index: 0 },
         };
         let list = draw_list(data, Attributes::ReflectiveTextured, views, takes);
         let pass = graph.raster(name, textured, Attributes::ReflectiveTextured.raster_state(data));

@@ -10,7 +10,8 @@ use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
 use crate::frame::rays::TracedScene;
 use crate::method::FrameCx;
 use crate::shaders::groups::{Landing, SceneRays};
-use crate::shaders::photons::{Land, LandPush, LandTraced, LandTracedPush};
+use crate::shaders::photons::{Land, LandTraced};
+use crate::shaders::types::LandingStage;
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const WORDS: vk::Format = vk::Format::R32_UINT;
@@ -31,7 +32,7 @@ pub(crate) fn land(
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
     let ellipses = if rays.stage == 0 { landed.ellipses.write() } else { landed.ellipses.modify() };
-    let push = LandPush {
+    let push = LandingStage {
         shift: scene.map_or([0.0; 3], |(traced, _)| shift(data, traced)),
         stage: rays.stage as u32,
         goes_on: u32::from(rays.stage + 1 < landed.stage),
@@ -59,27 +60,9 @@ pub(crate) fn land(
         ellipses,
     };
     let geometry = cx.frame.geometry.clone();
-    let pass = match scene {
+    let pass = match scene.map(|(_, rays)| rays.clone()) {
         None => graph.pass(&name, Land { geometry, landing, push }),
-        Some((_, scene_rays)) => graph.pass(
-            &name,
-            LandTraced {
-                geometry,
-                landing,
-                scene_rays: scene_rays.clone(),
-                push: LandTracedPush {
-                    shift: push.shift,
-                    stage: push.stage,
-                    goes_on: push.goes_on,
-                    landed_stage: push.landed_stage,
-                    capacity: push.capacity,
-                    landed_capacity: push.landed_capacity,
-                    radius: push.radius,
-                    disc_scale: push.disc_scale,
-                    beams_decide: push.beams_decide,
-                },
-            },
-        ),
+        Some(scene_rays) => graph.pass(&name, LandTraced { geometry, landing, scene_rays, push }),
     };
     pass.count("landed so far", choice.counts, Choice::count_word(landed.stage))
         .threads_indirect(choice.counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);

@@ -9,7 +9,7 @@ use crate::frame::geometry::{Attributes, DrawView, draw_list};
 use crate::frame::scene_data::DrawnInstance;
 use crate::graph::bindings::ImageRef;
 use crate::graph::{ClearColor, Graph};
-use crate::shaders::photon_lists::{Layer, LayerPush, Peel, PeelMasked, PeelMaskedPush, PeelPush};
+use crate::shaders::photon_lists::{Layer, LayerPush, Peel, PeelMasked};
 
 /// Bits of the float that is infinitely far: no surface follows.
 const FARTHEST: u32 = 0x7F80_0000;
@@ -21,10 +21,7 @@ pub(super) fn peel(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &Scene
     let depth = graph.image("photons.layers.depth", vk::Format::D32_SFLOAT, size);
     let layers = ["photons.layers.even", "photons.layers.odd"]
         .map(|name| graph.image(name, vk::Format::R32G32B32A32_UINT, size));
-    let capacity = lists.nodes.count() as u32;
-    let draw_views = draw_views(views, resolution, |view_index| {
-        bytemuck::bytes_of(&PeelPush { view_index, view_count, resolution, capacity }).to_vec()
-    });
+    let draw_views = draw_views(views, lists);
     let peeling = Peeling { inputs, lists, draw_views: &draw_views, depth };
     // The first layer follows the eye.
     graph.clear_image("caustics/photons/lists/layers-clear", layers[1], ClearColor::Uint([0; 4]));
@@ -61,19 +58,17 @@ struct Peeling<'a> {
 impl Peeling<'_> {
     fn draw(&self, graph: &mut Graph<'_>, number: u32, layer: ImageRef, previous: ImageRef) {
         let ListInputs { data, geometry, .. } = *self.inputs;
-        let SceneLists { resolution, view_count, .. } = *self.lists;
-        let capacity = self.lists.nodes.count() as u32;
         let solid = Peel {
             geometry: geometry.clone(),
             photon_lists: self.lists.group(),
             previous: previous.sampled(),
-            push: PeelPush { view_index: 0, view_count, resolution, capacity },
+            push: self.lists.drawn(0),
         };
         let list = draw_list(data, Attributes::Depth, self.draw_views, is_solid);
         let name = format!("caustics/photons/lists/layers.{number}");
         graph
             .raster(&name, solid, Attributes::Depth.raster_state(data))
-            .note("views", u64::from(view_count))
+            .note("views", u64::from(self.lists.view_count))
             .depth(self.depth, Some(0.0))
             .color(layer, Some(ClearColor::Uint([FARTHEST, 0, 0, 0])))
             .draw(list);
@@ -86,7 +81,7 @@ impl Peeling<'_> {
             photon_lists: self.lists.group(),
             previous: previous.sampled(),
             textures: data.texture_kinds(cut),
-            push: PeelMaskedPush { view_index: 0, view_count, resolution, capacity },
+            push: self.lists.drawn(0),
         };
         let list = draw_list(data, Attributes::DepthMasked, self.draw_views, cut);
         graph

@@ -29,13 +29,15 @@ impl ListView {
         self.texels[5].w
     }
 
-    /// What is drawn of it into its square, the `index`-th from above.
-    pub(crate) fn draw_view(&self, index: u32, resolution: u32, push: Vec<u8>) -> DrawView {
+    /// What is drawn of it into its square; the first view's is the topmost.
+    pub(crate) fn draw_view(&self, drawn: types::DrawnListView) -> DrawView {
+        let types::DrawnListView { view_index, resolution, .. } = drawn;
         let [x, y, w, depth] = [0, 1, 2, 3].map(|row| self.texels[row]);
         let scale = 2.0 / resolution as f32;
         let z = if self.perspective() { Vec4::W * self.near() } else { Vec4::W - depth / self.far() };
         let matrix = Mat4::from_cols(x * scale - w, y * scale - w, z, w).transpose();
-        let rectangle = [0, index * resolution, resolution, resolution];
+        let rectangle = [0, view_index * resolution, resolution, resolution];
+        let push = bytemuck::bytes_of(&drawn).to_vec();
         DrawView::new(&matrix.to_cols_array_2d(), Some((rectangle.map(|side| side as f32), rectangle)), Some(push))
     }
 }

@@ -12,7 +12,7 @@ use crate::frame::geometry::{Attributes, draw_list};
 use crate::frame::scene_data::DrawnInstance;
 use crate::graph::{Dependence, Graph};
 use crate::shaders::photon_lists::{
-    Append, AppendMasked, AppendMaskedPush, AppendPush, Coarser, CoarserPush, Occupancy, OccupancyPush,
+    Append, AppendMasked, Coarser, CoarserPush, Occupancy, OccupancyPush,
 };
 use crate::vulkan::RasterState;
 
@@ -91,10 +91,7 @@ fn levels(resolution: u32, view_count: u32) -> (u32, [u32; MOST_LEVELS], usize) 
 fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, views: &[ListView]) {
     let ListInputs { data, geometry, .. } = *inputs;
     let SceneLists { resolution, view_count, .. } = *lists;
-    let capacity = lists.nodes.count() as u32;
-    let draw_views = draw_views(views, resolution, |view_index| {
-        bytemuck::bytes_of(&AppendPush { view_index, view_count, resolution, capacity }).to_vec()
-    });
+    let draw_views = draw_views(views, lists);
     let area = [resolution, resolution * view_count];
     let state = |attributes: Attributes| RasterState { depth: None, ..attributes.raster_state(data) };
     let solid = Append {
@@ -103,12 +100,12 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.write(),
-        push: AppendPush { view_index: 0, view_count, resolution, capacity },
+        push: lists.drawn(0),
     };
     let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
     let pass = graph.raster("caustics/photons/lists/draw", solid, state(Attributes::Depth));
     pass.note("views", u64::from(view_count))
-        .note("capacity", u64::from(capacity))
+        .note("capacity", lists.nodes.count() as u64)
         .count("nodes", lists.node_count, 0)
         .area(area)
         .draw(list);
@@ -124,7 +121,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         node_count: lists.node_count.read_write(),
         nodes: lists.nodes.read_write(),
         textures: data.texture_kinds(cut),
-        push: AppendMaskedPush { view_index: 0, view_count, resolution, capacity },
+        push: lists.drawn(0),
     };
     let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
     let pass = graph.raster("caustics/photons/lists/draw-masked", masked, state(Attributes::DepthMasked));

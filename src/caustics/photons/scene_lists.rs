@@ -45,6 +45,12 @@ pub(crate) struct Blocks {
 }
 
 impl SceneLists {
+    /// What the programs that draw the view `view_index` need to know.
+    pub(super) fn drawn(&self, view_index: u32) -> types::DrawnListView {
+        let SceneLists { resolution, view_count, nodes, .. } = *self;
+        types::DrawnListView { view_index, view_count, resolution, capacity: nodes.count() as u32 }
+    }
+
     /// As passes read them.
     pub(super) fn group(&self) -> PhotonLists {
         PhotonLists {
@@ -60,6 +66,7 @@ pub(super) fn is_solid(drawn: &DrawnInstance) -> bool {
     !(drawn.masked && drawn.textured)
 }
 
-pub(super) fn draw_views(views: &[ListView], resolution: u32, push: impl Fn(u32) -> Vec<u8>) -> Vec<DrawView> {
-    (0..).zip(views).map(|(index, view)| view.draw_view(index, resolution, push(index))).collect()
+/// What is drawn of each view.
+pub(super) fn draw_views(views: &[ListView], lists: &SceneLists) -> Vec<DrawView> {
+    (0..).zip(views).map(|(index, view)| view.draw_view(lists.drawn(index))).collect()
 }

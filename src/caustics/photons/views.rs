@@ -11,7 +11,8 @@ use crate::frame::scene_data::{DrawnInstance, SceneData};
 use crate::graph::ClearColor;
 use crate::graph::bindings::ImageRef;
 use crate::method::FrameCx;
-use crate::shaders::photons::{Specular, SpecularPush, SpecularTextured, SpecularTexturedPush};
+use crate::shaders::photons::{Specular, SpecularTextured};
+use crate::shaders::types::DrawnLightView;
 use crate::vulkan::{DepthState, RasterState};
 
 /// Images of the light views' atlas.
@@ -39,7 +40,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     let pass = Specular {
         geometry: geometry.clone(),
         light_views: lights.group.clone(),
-        push: SpecularPush { view_index: 0 },
+        push: DrawnLightView { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Plain, &views, plain);
     graph
@@ -59,7 +60,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
         geometry: geometry.clone(),
         light_views: lights.group.clone(),
         textures: data.texture_kinds(textured),
-        push: SpecularTexturedPush { view_index: 0 },
+        push: DrawnLightView { view_index: 0 },
     };
     let list = draw_list(data, Attributes::Textured, &views, textured);
     graph
