@@ -7,7 +7,6 @@ use glam::DVec3;
 use super::probe::{Pixel, Vpl, probe, slot, vpls};
 use super::scenes::{builtin, request, settings};
 use super::session::Session;
-use crate::frame::twins;
 use crate::renderer::Slot;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -15,11 +14,7 @@ const SIZE: [u32; 2] = [64, 48];
 /// Σ Φ/π · (n·−ω)⁺ (n_x·ω)⁺ / (d² + A/π), W/m².
 fn irradiance(vpls: &[Vpl], pixel: &Pixel) -> DVec3 {
     let of_light = |vpl: &Vpl| {
-        let difference = vpl.texels[0].truncate().as_dvec3() - pixel.position_rs;
-        let squared = difference.length_squared();
-        let toward = difference / squared.sqrt();
-        let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).as_dvec3().normalize();
-        let cosines = normal.dot(-toward).max(0.0) * pixel.normal.dot(toward).max(0.0);
+        let (cosines, squared) = vpl.cosines_and_square(pixel);
         vpl.flux * (FRAC_1_PI * cosines / (squared + f64::from(vpl.texels[0].w)))
     };
     vpls.iter().map(of_light).sum()
@@ -73,13 +68,5 @@ fn lights_lie_on_the_walls_and_face_the_room() {
     let bounds = scene.bounds().expect("a room");
     let request = request([8, 8], scene.camera_view(None).expect("its camera"), &[]);
     let frame = probe(&session, &scene, &settings(&[]), &request, |graph, declared| vec![vpls(graph, declared)]);
-    for vpl in frame.vpls(0) {
-        let point = vpl.texels[0].truncate().as_dvec3() + frame.origin;
-        let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).normalize();
-        let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
-        assert!(normal[axis].abs() > 0.999, "every wall is straight, not {normal}");
-        let wall = if normal[axis] > 0.0 { bounds.min[axis] } else { bounds.max[axis] };
-        let off = (point[axis] - wall).abs();
-        assert!(off < 1e-3 * bounds.radius(), "a light {off} m off its wall at {point}, normal {normal}");
-    }
+    frame.assert_vpls_on_walls(0, &bounds);
 }

@@ -1,12 +1,12 @@
 //! Virtual point lights stand for all reflected flux, and lights share their number by flux.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use super::probe::{light_flux, probe, vpls};
-use super::scenes::{add_light, box_faces, builtin, lambert, place, request, settings, view};
+use super::scenes::{builtin, four_rooms, request, settings, view};
 use super::session::Session;
 use crate::renderer::FrameRequest;
-use crate::scene::{LightKind, Scene};
+use crate::scene::Scene;
 
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
@@ -16,11 +16,7 @@ fn flux_error(session: &Session, scene: &Scene, request: &FrameRequest, count: u
     let frame = probe(session, scene, &settings, request, |graph, declared| {
         vec![light_flux(graph, declared), vpls(graph, declared)]
     });
-    let texels: DVec3 = frame.flux_of_lights(0).into_iter().sum();
-    let vpls = frame.vpls(1);
-    assert_eq!(vpls.len(), count as usize);
-    assert!(vpls.iter().all(|vpl| vpl.flux.min_element() >= 0.0 && vpl.texels[0].w > 0.0));
-    let sum: DVec3 = vpls.iter().map(|vpl| vpl.flux).sum();
+    let (texels, sum) = frame.reflected_and_carried([0, 1], count);
     let error = ((sum - texels) / texels).abs().max_element();
     println!("{}, {count} VPLs: {sum:.4} W, relative error {error:.2e}", scene.name);
     error
@@ -36,27 +32,6 @@ fn the_lights_carry_all_reflected_flux() {
             assert!(flux_error(&session, &scene, &request, count) < 1e-5);
         }
     }
-}
-
-/// Four separate rooms in a row, each with its own colour, light and strength.
-fn four_rooms() -> Scene {
-    let mut scene = Scene::empty("four rooms");
-    let spot = LightKind::Spot { inner_angle: 0.4, outer_angle: 0.7 };
-    let rooms = [
-        ([0.9, 0.1, 0.1], LightKind::Point, [1.0, 2.0, 3.0]),
-        ([0.1, 0.8, 0.2], spot, [40.0, 10.0, 10.0]),
-        ([0.3, 0.3, 0.9], LightKind::Point, [0.3, 0.2, 0.1]),
-        ([0.5, 0.5, 0.5], LightKind::Point, [0.001; 3]),
-    ];
-    for (index, (albedo, kind, intensity)) in rooms.into_iter().enumerate() {
-        let center = DVec3::new(10.0 * index as f64, 0.0, 0.0);
-        let wall = scene.add_material(lambert(albedo)).expect("a sound material");
-        let grey = scene.add_material(lambert([0.6; 3])).expect("a sound material");
-        let faces = box_faces([1.0; 3], [wall, wall, grey, grey, wall, grey]);
-        place(&mut scene, faces, DAffine3::from_translation(center));
-        add_light(&mut scene, kind, center + DVec3::new(0.1, 0.3, -0.2), DVec3::new(0.2, -1.0, 0.1), intensity);
-    }
-    scene
 }
 
 #[test]

@@ -4,11 +4,11 @@ use glam::{DAffine3, Mat4, Vec3};
 
 use super::photon_stage::{Comparison, HIT_NONE, Stage, coherent_rays, direction, photon_options};
 use super::rays::{NO_TRIANGLE, Random, Ray, ray, trace_in};
-use super::scenes::{builtin, closed_box, lambert, place, quad};
+use super::scenes::{builtin, closed_box, lambert, lattice, place};
 use super::session::Session;
 use crate::frame::camera::camera;
 use crate::frame::twins::unpack_direction;
-use crate::scene::{Alpha, Material, Primitive, Scene, Texture, TextureRef, Wrap};
+use crate::scene::Scene;
 use crate::shaders::types;
 
 #[test]
@@ -85,7 +85,7 @@ fn lists_stand_while_the_geometry_does() {
 #[test]
 fn a_hole_in_a_masked_surface_leaves_no_node() {
     let session = Session::open();
-    let mut stage = Stage::new(&session, lattice());
+    let mut stage = Stage::new(&session, lattice_floor());
     for geometry in ["lists", "layers:2"] {
         // Squares of eight texels; of three views one sees the floor, the others its edge.
         let settings = photon_options(&[("resolution", "34"), ("geometry", geometry)]);
@@ -196,25 +196,9 @@ fn steps_grow_more_slowly_than_the_resolution() {
 }
 
 /// A floor of 4×4 squares, every other one of which is a hole.
-fn lattice() -> Scene {
+fn lattice_floor() -> Scene {
     let mut scene = Scene::empty("lattice");
-    let alpha = |texel: u32| if (texel % 4 + texel / 4).is_multiple_of(2) { 255 } else { 0 };
-    let texture = Texture {
-        name: String::new(),
-        width: 4,
-        height: 4,
-        rgba8: (0..16).flat_map(|texel| [255, 255, 255, alpha(texel)]).collect(),
-        wrap: [Wrap::Repeat; 2],
-        nearest: true,
-        srgb: true,
-    };
-    let texture = TextureRef::new(scene.add_texture(texture).expect("sound"));
-    let material =
-        Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_color_texture: Some(texture), ..lambert([0.5; 3]) };
-    let id = scene.add_material(material).expect("sound");
-    let corners = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]];
-    let texcoords = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
-    let floor = Primitive { texcoords: [Some(texcoords), None], ..quad(corners, id) };
+    let floor = lattice(&mut scene, [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]]);
     place(&mut scene, vec![floor], DAffine3::IDENTITY);
     scene
 }

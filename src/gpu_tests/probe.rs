@@ -15,7 +15,7 @@ use crate::graph::{Graph, ReadBack};
 use crate::method::{FrameCx, Rays};
 use crate::renderer::declare::{Shared, inputs_of, wanted_methods};
 use crate::renderer::{DiffuseMethod, FrameRequest, Settings, Slot, Timing};
-use crate::scene::Scene;
+use crate::scene::{Bounds, Scene};
 use crate::shaders::types;
 
 /// The scene and its lights as the device has them.
@@ -120,7 +120,40 @@ pub(super) struct Pixel {
     pub(super) albedo: DVec3,
 }
 
+impl Vpl {
+    /// The cosines at the light and at the pixel, multiplied, and the square of their distance, m².
+    pub(super) fn cosines_and_square(&self, pixel: &Pixel) -> (f64, f64) {
+        let difference = self.texels[0].truncate().as_dvec3() - pixel.position_rs;
+        let squared = difference.length_squared();
+        let toward = difference / squared.sqrt();
+        let normal = twins::unpack_direction_in_float_unnormalized(self.texels[1].w).as_dvec3().normalize();
+        (normal.dot(-toward).max(0.0) * pixel.normal.dot(toward).max(0.0), squared)
+    }
+}
+
 impl Probe {
+    /// The sums of what all texels of the light views reflect, and of what all virtual point lights carry, W. `reads` are the flux image and
+    /// the lights.
+    pub(super) fn reflected_and_carried(&self, reads: [usize; 2], count: u32) -> (DVec3, DVec3) {
+        let vpls = self.vpls(reads[1]);
+        assert_eq!(vpls.len(), count as usize);
+        assert!(vpls.iter().all(|vpl| vpl.flux.min_element() >= 0.0 && vpl.texels[0].w > 0.0));
+        (self.flux_of_lights(reads[0]).into_iter().sum(), vpls.iter().map(|vpl| vpl.flux).sum())
+    }
+
+    /// That the virtual point lights lie on the straight walls of a room of these bounds, and face it.
+    pub(super) fn assert_vpls_on_walls(&self, read: usize, bounds: &Bounds) {
+        for vpl in self.vpls(read) {
+            let point = vpl.texels[0].truncate().as_dvec3() + self.origin;
+            let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).normalize();
+            let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+            assert!(normal[axis].abs() > 0.999, "every wall is straight, not {normal}");
+            let wall = if normal[axis] > 0.0 { bounds.min[axis] } else { bounds.max[axis] };
+            let off = (point[axis] - wall).abs();
+            assert!(off < 1e-3 * bounds.radius(), "a light {off} m off its wall at {point}, normal {normal}");
+        }
+    }
+
     pub(super) fn floats(&self, read: usize) -> Vec<f32> {
         self.reads[read].chunks_exact(4).map(|bytes| f32::from_bits(word(bytes))).collect()
     }

@@ -84,32 +84,39 @@ fn stencil_marks_of_one_pass_restrict_another() {
     }
 }
 
-/// Depth and stencil of one image: depth is drawn first, the stencil marked with it attached, then both are used
-/// while depth is sampled.
-#[test]
-fn a_pass_tests_the_stencil_and_samples_depth_of_one_image() {
+const DEPTH_WRITTEN: Option<DepthState> = Some(DepthState { compare: vk::CompareOp::ALWAYS, write: true });
+
+/// Passes on one image of depth and stencil, and the hits that they leave.
+fn on_one_image(draw: impl FnOnce(&mut Graph<'_>, ImageRef, BufferRef<u32>), expected: impl Fn(u32, u32) -> u32) {
     let session = Session::open();
     let mut store = session.store();
     let mut graph = Graph::new(&mut store);
     let (_, hits) = canvas(&mut graph);
     let image = graph.image("depth", vk::Format::D32_SFLOAT_S8_UINT, SIZE);
-    let depth = Some(DepthState { compare: vk::CompareOp::ALWAYS, write: true });
-    // 0.5 inside the rectangle, 0.75 elsewhere.
-    graph
-        .raster("both/depth", rectangle([4.0, 0.0], [24.0, 9.0]), RasterState { depth, ..state(None) })
-        .depth(image, Some(0.75))
-        .vertices(3, 1);
-    graph.raster("both/clear", rectangle([0.0; 2], [0.0; 2]), marking(0)).stencil(image, Some(3)).vertices(3, 1);
-    let greater = Some(DepthState { compare: vk::CompareOp::GREATER_OR_EQUAL, write: false });
-    // The triangle's depth of 0.5 passes where the image holds 0.5.
-    graph
-        .raster("both/mark", rectangle([0.0; 2], [12.0, 17.0]), RasterState { depth: greater, ..marking(1) })
-        .depth(image, None)
-        .stencil(image, None)
-        .vertices(3, 1);
-    graph.raster("both/ones", splat(image, hits), testing(1)).stencil(image, None).vertices(3, 1);
-    graph.raster("both/threes", splat(image, hits), testing(3)).stencil(image, None).vertices(3, 2);
-    expect(&run(graph, hits), |x, y| match () {
+    draw(&mut graph, image, hits);
+    expect(&run(graph, hits), expected);
+}
+
+/// Depth and stencil of one image: depth is drawn first, the stencil marked with it attached, then both are used
+/// while depth is sampled.
+#[test]
+fn a_pass_tests_the_stencil_and_samples_depth_of_one_image() {
+    let draw = |graph: &mut Graph<'_>, image: ImageRef, hits: BufferRef<u32>| {
+        // 0.5 inside the rectangle, 0.75 elsewhere.
+        let drawn = RasterState { depth: DEPTH_WRITTEN, ..state(None) };
+        graph.raster("both/depth", rectangle([4.0, 0.0], [24.0, 9.0]), drawn).depth(image, Some(0.75)).vertices(3, 1);
+        graph.raster("both/clear", rectangle([0.0; 2], [0.0; 2]), marking(0)).stencil(image, Some(3)).vertices(3, 1);
+        let greater = Some(DepthState { compare: vk::CompareOp::GREATER_OR_EQUAL, write: false });
+        // The triangle's depth of 0.5 passes where the image holds 0.5.
+        graph
+            .raster("both/mark", rectangle([0.0; 2], [12.0, 17.0]), RasterState { depth: greater, ..marking(1) })
+            .depth(image, None)
+            .stencil(image, None)
+            .vertices(3, 1);
+        graph.raster("both/ones", splat(image, hits), testing(1)).stencil(image, None).vertices(3, 1);
+        graph.raster("both/threes", splat(image, hits), testing(3)).stencil(image, None).vertices(3, 2);
+    };
+    on_one_image(draw, |x, y| match () {
         () if inside(x, y, [4, 0], [12, 9]) => 1,
         () if inside(x, y, [4, 0], [24, 9]) => 2,
         () => 202,
@@ -118,20 +125,17 @@ fn a_pass_tests_the_stencil_and_samples_depth_of_one_image() {
 
 #[test]
 fn depth_and_stencil_cleared_by_one_pass_serve_two_others() {
-    let session = Session::open();
-    let mut store = session.store();
-    let mut graph = Graph::new(&mut store);
-    let (_, hits) = canvas(&mut graph);
-    let image = graph.image("depth", vk::Format::D32_SFLOAT_S8_UINT, SIZE);
-    let depth = Some(DepthState { compare: vk::CompareOp::ALWAYS, write: true });
-    graph
-        .raster("clear/both", rectangle([3.0, 3.0], [6.0, 6.0]), RasterState { depth, ..marking(9) })
-        .depth(image, Some(1.0))
-        .stencil(image, Some(4))
-        .vertices(3, 1);
-    graph.raster("clear/fours", splat(image, hits), testing(4)).stencil(image, None).vertices(3, 1);
-    graph.raster("clear/nines", splat(image, hits), testing(9)).stencil(image, None).vertices(3, 3);
-    expect(&run(graph, hits), |x, y| if inside(x, y, [3, 3], [6, 6]) { 3 } else { 101 });
+    let draw = |graph: &mut Graph<'_>, image: ImageRef, hits: BufferRef<u32>| {
+        let drawn = RasterState { depth: DEPTH_WRITTEN, ..marking(9) };
+        graph
+            .raster("clear/both", rectangle([3.0, 3.0], [6.0, 6.0]), drawn)
+            .depth(image, Some(1.0))
+            .stencil(image, Some(4))
+            .vertices(3, 1);
+        graph.raster("clear/fours", splat(image, hits), testing(4)).stencil(image, None).vertices(3, 1);
+        graph.raster("clear/nines", splat(image, hits), testing(9)).stencil(image, None).vertices(3, 3);
+    };
+    on_one_image(draw, |x, y| if inside(x, y, [3, 3], [6, 6]) { 3 } else { 101 });
 }
 
 fn hits_of_area(store: &mut Store, area: [u32; 2]) -> Vec<u32> {

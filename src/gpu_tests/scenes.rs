@@ -4,7 +4,8 @@ use glam::{DAffine3, DVec3};
 
 use crate::renderer::{DiffuseMethod, FrameRequest, Preset, Settings, Slot, Technique};
 use crate::scene::{
-    CameraView, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node, NodeId, Primitive, Projection, Scene,
+    Alpha, CameraView, Light, LightKind, LightSpec, Material, MaterialId, Mesh, Node, NodeId, Primitive, Projection,
+    Scene, Texture, TextureRef, Wrap,
 };
 
 /// Diffuse alone: no specular layer takes a share.
@@ -55,6 +56,47 @@ pub(crate) fn floor(half: f32, material: Material) -> Scene {
     let id = scene.add_material(material).expect("a sound material");
     let corners = [[-half, 0.0, -half], [-half, 0.0, half], [half, 0.0, half], [half, 0.0, -half]];
     place(&mut scene, vec![quad(corners, id)], DAffine3::IDENTITY);
+    scene
+}
+
+/// A square of 4×4 texels, every other one of which is a hole; `corners` as [`quad`] takes them.
+pub(crate) fn lattice(scene: &mut Scene, corners: [[f32; 3]; 4]) -> Primitive {
+    let alpha = |texel: u32| if (texel % 4 + texel / 4).is_multiple_of(2) { 255 } else { 0 };
+    let texture = Texture {
+        name: String::new(),
+        width: 4,
+        height: 4,
+        rgba8: (0..16).flat_map(|texel| [255, 255, 255, alpha(texel)]).collect(),
+        wrap: [Wrap::Repeat; 2],
+        nearest: true,
+        srgb: true,
+    };
+    let texture = TextureRef::new(scene.add_texture(texture).expect("sound"));
+    let material =
+        Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_color_texture: Some(texture), ..lambert([0.5; 3]) };
+    let material = scene.add_material(material).expect("sound");
+    let texcoords = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
+    Primitive { texcoords: [Some(texcoords), None], ..quad(corners, material) }
+}
+
+/// Four separate rooms in a row, each with its own colour, kind of light and strength.
+pub(crate) fn four_rooms() -> Scene {
+    let mut scene = Scene::empty("four rooms");
+    let spot = LightKind::Spot { inner_angle: 0.4, outer_angle: 0.7 };
+    let rooms = [
+        ([0.9, 0.1, 0.1], LightKind::Point, [1.0, 2.0, 3.0]),
+        ([0.1, 0.8, 0.2], spot, [40.0, 10.0, 10.0]),
+        ([0.3, 0.3, 0.9], LightKind::Point, [0.3, 0.2, 0.1]),
+        ([0.5, 0.5, 0.5], LightKind::Point, [0.001; 3]),
+    ];
+    for (index, (albedo, kind, intensity)) in rooms.into_iter().enumerate() {
+        let center = DVec3::new(10.0 * index as f64, 0.0, 0.0);
+        let wall = scene.add_material(lambert(albedo)).expect("a sound material");
+        let grey = scene.add_material(lambert([0.6; 3])).expect("a sound material");
+        let faces = box_faces([1.0; 3], [wall, wall, grey, grey, wall, grey]);
+        place(&mut scene, faces, DAffine3::from_translation(center));
+        add_light(&mut scene, kind, center + DVec3::new(0.1, 0.3, -0.2), DVec3::new(0.2, -1.0, 0.1), intensity);
+    }
     scene
 }
 

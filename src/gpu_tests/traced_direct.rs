@@ -2,13 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::scenes::{add_light, box_faces, builtin, floor, lambert, place, quad, request, view};
+use super::scenes::{add_light, box_faces, builtin, floor, lambert, lattice, place, quad, request, view};
 use super::session::Session;
 use crate::renderer::{DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
-use crate::scene::{
-    Alpha, CameraView, Light, LightId, LightKind, Material, MaterialId, Primitive, Projection, Scene, Texture,
-    TextureRef, Wrap,
-};
+use crate::scene::{CameraView, Light, LightId, LightKind, Material, MaterialId, Projection, Scene};
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -206,27 +203,8 @@ fn no_traced_light_leaks_into_dark_rooms() {
 fn cut_out_surfaces_cast_cut_out_shadows() {
     let session = Session::open();
     let mut scene = floor(1.0, lambert([0.5; 3]));
-    let alpha = |texel: u32| if (texel % 4 + texel / 4).is_multiple_of(2) { 255 } else { 0 };
-    let texture = Texture {
-        name: String::new(),
-        width: 4,
-        height: 4,
-        rgba8: (0..16).flat_map(|texel| [255, 255, 255, alpha(texel)]).collect(),
-        wrap: [Wrap::Repeat; 2],
-        nearest: true,
-        srgb: true,
-    };
-    let texture = TextureRef::new(scene.add_texture(texture).expect("sound"));
-    let lattice =
-        Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_color_texture: Some(texture), ..lambert([0.5; 3]) };
-    let lattice = scene.add_material(lattice).expect("sound");
-    let corners = [[-0.5, 1.5, -0.5], [-0.5, 1.5, 0.5], [0.5, 1.5, 0.5], [0.5, 1.5, -0.5]];
-    let texcoords = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
-    place(
-        &mut scene,
-        vec![Primitive { texcoords: [Some(texcoords), None], ..quad(corners, lattice) }],
-        DAffine3::IDENTITY,
-    );
+    let lattice = lattice(&mut scene, [[-0.5, 1.5, -0.5], [-0.5, 1.5, 0.5], [0.5, 1.5, 0.5], [0.5, 1.5, -0.5]]);
+    place(&mut scene, vec![lattice], DAffine3::IDENTITY);
     // At twice the lattice's height: its shadow just covers the floor, texel by texel.
     let light = DVec3::new(0.0, 3.0, 0.0);
     add_light(&mut scene, LightKind::Point, light, DVec3::NEG_Y, [5.0; 3]);

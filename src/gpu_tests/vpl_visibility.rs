@@ -7,7 +7,6 @@ use glam::{DAffine3, DVec3};
 use super::probe::{Pixel, Vpl, probe, slot};
 use super::scenes::{add_light, box_faces, builtin, lambert, place, quad, request, view, vpl_settings};
 use super::session::Session;
-use crate::frame::twins;
 use crate::renderer::{ColorImage, FrameRequest, Preset, Settings, Slot, Technique};
 use crate::scene::{LightKind, Material, Scene};
 
@@ -78,11 +77,8 @@ fn blocked(triangles: &[[DVec3; 3]], from: DVec3, to: DVec3) -> bool {
 
 /// The VPL's part of a pixel's irradiance, as of a point.
 fn point_term(vpl: &Vpl, pixel: &Pixel) -> DVec3 {
-    let difference = vpl.texels[0].truncate().as_dvec3() - pixel.position_rs;
-    let squared = difference.length_squared();
-    let toward = difference / squared.sqrt();
-    let normal = twins::unpack_direction_in_float_unnormalized(vpl.texels[1].w).as_dvec3().normalize();
-    vpl.flux * (FRAC_1_PI * normal.dot(-toward).max(0.0) * pixel.normal.dot(toward).max(0.0) / squared)
+    let (cosines, squared) = vpl.cosines_and_square(pixel);
+    vpl.flux * (FRAC_1_PI * cosines / squared)
 }
 
 /// VPLs that are small beside their distance, so that their discs are points: in a long box, lamp and receivers at its ends.
