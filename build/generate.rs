@@ -81,7 +81,7 @@ fn write_groups(out: &mut String, groups: &[Group]) {
         out.push_str("}\n");
         let may_lack =
             |member: &Binding| matches!(member.kind, BindingKind::SampledImage(_) | BindingKind::TexelBuffer);
-        if group.members.iter().all(may_lack) {
+        if !group.members.is_empty() && group.members.iter().all(may_lack) {
             writeln!(
                 out,
                 "impl {name} {{\n/// Nothing is there; no pass reads any of it.\npub fn absent() -> {name} {{"

@@ -190,6 +190,20 @@ fn a_struct_that_differs_between_shaders_is_refused() {
 }
 
 #[test]
+fn push_constants_of_another_name_are_one_type_for_all_programs() {
+    let block = "layout(push_constant, scalar) uniform Reach { vec3 center; uint count; } push;";
+    let body = "layout(set = 0, binding = 0) buffer Sums { float sums[]; };
+        void main() { sums[0] = push.center.x * float(push.count); }";
+    let shader = compute(&format!("{block}\n{body}"));
+    let generated = build(&[("a/one.comp", &shader), ("b/two.comp", &shader)]).expect("sound programs");
+    assert_eq!(generated.matches("pub struct Reach {").count(), 1, "{generated}");
+    assert_eq!(generated.matches("pub push: types::Reach,").count(), 2, "{generated}");
+    let other = shader.replace("vec3 center", "vec3 middle").replace("push.center", "push.middle");
+    let error = complaint(&[("a/one.comp", &shader), ("b/two.comp", &other)]);
+    assert!(error.contains("struct Reach") && error.contains("glsl/b/two"), "{error}");
+}
+
+#[test]
 fn stages_with_different_push_constants_are_refused() {
     let vertex = format!(
         "{HEAD}layout(push_constant, scalar) uniform Push {{ vec4 corner; }} push;\nvoid main() {{ gl_Position = push.corner; }}"

@@ -18,6 +18,7 @@ mod invariance;
 mod layouts;
 mod leaks;
 mod light_share;
+mod lists;
 mod memory;
 mod path_caustics;
 mod path_closed_forms;
