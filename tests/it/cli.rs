@@ -11,7 +11,7 @@ use irradia::output::read_exr;
 use irradia::renderer::{Slot, ToneMap};
 use irradia::scene::builtin_names;
 
-use crate::files::{empty_folder, read_png};
+use crate::files::{empty_folder, names_in, read_png};
 
 fn irradia(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_irradia")).args(arguments).output().expect("the program starts")
@@ -19,14 +19,6 @@ fn irradia(arguments: &[&str]) -> Output {
 
 fn folder(test: &str) -> PathBuf {
     empty_folder("cli", test)
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the test's own folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 fn text(path: &Path) -> &str {

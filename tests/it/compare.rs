@@ -9,7 +9,7 @@ use irradia::bench::comparison::ComparisonReport;
 use irradia::output::{Attributes, write_exr};
 use irradia::renderer::{ColorImage, Slot};
 
-use crate::files::{empty_folder, read_png};
+use crate::files::{empty_folder, names_in, read_png};
 
 fn folder(test: &str) -> PathBuf {
     empty_folder("compare", test)
@@ -24,14 +24,6 @@ fn compare(folder: &Path, arguments: &[&str]) -> Output {
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the test's own folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 fn assert_fails(folder: &Path, status: i32, arguments: &[&str], words: &[&str]) {

@@ -13,6 +13,15 @@ pub(crate) fn empty_folder(capability: &str, test: &str) -> PathBuf {
     path
 }
 
+/// What a folder holds, in order.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the test's own folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
 /// Size and pixels of an RGB file with eight bits a channel.
 pub(crate) fn read_png(path: &Path) -> ([u32; 2], Vec<[u8; 3]>) {
     let bytes = fs::read(path).expect("it was written");

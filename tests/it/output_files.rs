@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::files::empty_folder;
+use crate::files::{empty_folder, names_in};
 
 fn folder(test: &str) -> PathBuf {
     empty_folder("output-files", test)
@@ -25,14 +25,6 @@ fn assert_fails(output: &Path, words: &[&str]) {
     for word in words {
         assert!(message.contains(word), "{word} is not in: {message}");
     }
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("the test's own folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 #[test]
