@@ -3,17 +3,12 @@
 #ifndef DIRECT_RECEIVER
 #define DIRECT_RECEIVER
 
+#include "groups/direct_sum.glsl"
 #include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/sobol.glsl"
 #include "lib/surface_packing.glsl"
 #include "lib/lobes.glsl"
-
-// 1: `before` holds what earlier kernels found.
-layout(constant_id = 2) const uint ADDS = 0u;
-
-layout(set = 0, binding = 0) uniform sampler2D before;
-layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D direct;
 
 #include "lib/pixel_rays.glsl"
 #include "lib/cutouts.glsl"

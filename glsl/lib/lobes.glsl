@@ -13,6 +13,7 @@
 #ifndef LIB_LOBES
 #define LIB_LOBES
 
+#include "groups/lobes.glsl"
 #include "lib/brdf.glsl"
 #include "lib/microfacet.glsl"
 
@@ -28,11 +29,6 @@ struct Matter {
     vec3 transmission;   // tint times the share that is transmitted
     float relative_ior;  // beyond the surface over the viewer's side; 1: a thin wall
 };
-
-// 1: the scene has specular or transmissive lobes; 0: kernels hold the diffuse lobe alone.
-layout(constant_id = 0) const uint SPECULAR_LOBES = 1u;
-// 1: some surface transmits.
-layout(constant_id = 1) const uint TRANSMISSIVE = 1u;
 
 vec3 fresnel(Matter matter, float cosine) {
     if (TRANSMISSIVE != 0u && matter.relative_ior < 1.0) {

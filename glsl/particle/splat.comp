@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/connections.glsl"
 #include "groups/scene_rays.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -9,10 +10,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer connections;
-layout(set = 0, binding = 1) uniform samplerBuffer connection_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer connection_light;
-layout(set = 0, binding = 3) buffer SplatBlock { uint splats[]; };
+layout(set = 0, binding = 0) buffer SplatBlock { uint splats[]; };
 
 layout(push_constant, scalar) uniform Push {
     float scale;

@@ -1,5 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/connections.glsl"
+#include "groups/lobes.glsl"
 #include "groups/scene_rays.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -8,12 +10,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 0) const uint SPECULAR_LOBES = 1u;
-
-layout(set = 0, binding = 0) uniform usamplerBuffer connections;
-layout(set = 0, binding = 1) uniform samplerBuffer connection_rays;
-layout(set = 0, binding = 2) uniform samplerBuffer connection_light;
-layout(set = 0, binding = 3) buffer RadianceBlock { vec4 path_radiance[]; };
+layout(set = 0, binding = 0) buffer RadianceBlock { vec4 path_radiance[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint path_count;

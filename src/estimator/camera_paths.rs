@@ -6,7 +6,7 @@
 //!
 //! found by running into the light (surface) and by choosing a point of it (light, connect), weighted by the balance heuristic.
 
-use super::paths::{FLOATS, Paths, WORD, Walk};
+use super::paths::{Paths, Walk};
 use super::view::View;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -90,19 +90,14 @@ pub(super) fn generate(graph: &mut Graph<'_>, paths: &Paths, view: &View, wave: 
 
 /// Takes the paths to their vertex number `depth`, counted from 0, and on from there.
 pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
-    paths.intersect(graph, Walk::FromCamera, depth);
-    paths.surface(graph, scene, view, Walk::FromCamera, depth);
-    if view.bounces.is_none_or(|bounces| depth <= bounces) {
-        if scene.emitter_count > 0 {
-            find_light(graph, paths, scene, view, depth);
-        }
-        paths.scatter(graph, Walk::FromCamera, depth);
-    }
-    paths.tally(graph, Walk::FromCamera, depth);
+    paths.advance(graph, (scene, view), Walk::FromCamera, depth, |graph| find_light(graph, paths, scene, view, depth));
 }
 
-/// Next-event estimation.
+/// Next-event estimation, where a further bounce is allowed.
 pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
+    if scene.emitter_count == 0 || view.bounces.is_some_and(|bounces| depth > bounces) {
+        return;
+    }
     let light = shaders::Light {
         scene_rays: paths.rays.clone(),
         scene_lights: paths.lights.clone(),
@@ -110,8 +105,7 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
         connection_rays: paths.connection_rays.write(),
         connection_light: paths.connection_light.write(),
         connections: paths.connections.read_write(),
-        specular_lobes: paths.variants.specular,
-        transmissive: paths.variants.transmissive,
+        lobes: paths.lobes.clone(),
         push: shaders::LightPush {
             emitter_count: scene.emitter_count,
             depth,
@@ -122,11 +116,9 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
     graph.pass("path/light", light).threads_indirect(paths.alive, 0);
     let connect = shaders::Connect {
         scene_rays: paths.rays.clone(),
-        connections: paths.connections.texels(WORD),
-        connection_rays: paths.connection_rays.texels(FLOATS),
-        connection_light: paths.connection_light.texels(FLOATS),
+        connections: paths.connected(),
+        lobes: paths.lobes.clone(),
         path_radiance: paths.radiance.read_write(),
-        specular_lobes: paths.variants.specular,
         push: shaders::ConnectPush { path_count: paths.capacity, reserved: 0 },
     };
     graph.pass("path/connect", connect).count("rays", paths.connections, 3).threads_indirect(paths.connections, 0);

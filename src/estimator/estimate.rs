@@ -6,7 +6,7 @@ use super::cost::TraceCost;
 use super::sums::SlotSums;
 use super::view::EstimateRequest;
 use crate::frame::rays::TracedScene;
-use crate::graph::{GraphDescription, Timing};
+use crate::graph::{Executed, GraphDescription, ReadBack, Store, Timing};
 use crate::method::Options;
 use crate::scene::CameraView;
 use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
@@ -21,14 +21,18 @@ pub(crate) trait Estimator {
     const FIRST_PASS: [&'static str; 2];
     type Options: Options;
 
-    /// Which light it can find: what it is compared with.
-    fn light_paths(options: &Self::Options) -> LightPaths;
-
-    /// Where in a pixel it samples light.
-    fn filter(options: &Self::Options) -> PixelFilter;
-
     /// What a frame asks of it.
     fn samples(options: &Self::Options) -> Samples;
+
+    /// Which light it can find: what it is compared with.
+    fn light_paths(options: &Self::Options) -> LightPaths {
+        LightPaths::up_to(Self::samples(options).bounces)
+    }
+
+    /// Where in a pixel it samples light.
+    fn filter(options: &Self::Options) -> PixelFilter {
+        Self::samples(options).filter
+    }
 
     /// One that has no scene yet.
     ///
@@ -56,16 +60,48 @@ impl Samples {
     }
 }
 
+/// What an estimator works with.
+pub(crate) struct Work {
+    pub(super) store: Store,
+    pub(super) scene: Option<Arc<TracedScene>>,
+    pub(super) timing: Timing,
+    pub(super) cost: TraceCost,
+}
+
+impl Work {
+    pub(super) fn new(device: &Arc<Device>) -> Result<Work, VulkanError> {
+        Ok(Work { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+    }
+
+    /// Takes down what a submission cost that advanced paths. How many go on.
+    pub(super) fn add_step(&mut self, executed: Executed, totals: ReadBack) -> u32 {
+        self.cost.note_memory(&self.store);
+        self.cost.add_step(executed, totals)
+    }
+
+    pub(super) fn scene(&self) -> Arc<TracedScene> {
+        self.scene.clone().expect("set before anything is asked for")
+    }
+}
+
 /// An estimator at work on a device.
 pub(crate) trait Estimating {
+    fn work(&mut self) -> &mut Work;
+
     /// Works on this scene from now on.
-    fn set_scene(&mut self, scene: Arc<TracedScene>);
+    fn set_scene(&mut self, scene: Arc<TracedScene>) {
+        self.work().scene = Some(scene);
+    }
 
     /// Gives its memory back, until a scene is set again.
-    fn release_scene(&mut self);
+    fn release_scene(&mut self) {
+        self.work().scene = None;
+    }
 
     /// How the passes to come are timed.
-    fn set_timing(&mut self, timing: Timing);
+    fn set_timing(&mut self, timing: Timing) {
+        self.work().timing = timing;
+    }
 
     /// The sums over samples `first .. first + count` of half `half`, 0 or 1, of every pixel.
     ///
@@ -75,7 +111,9 @@ pub(crate) trait Estimating {
     -> Result<SlotSums, VulkanError>;
 
     /// What was spent since this was last asked.
-    fn take_cost(&mut self) -> TraceCost;
+    fn take_cost(&mut self) -> TraceCost {
+        std::mem::take(&mut self.work().cost)
+    }
 
     /// The passes that some samples take.
     ///

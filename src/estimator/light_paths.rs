@@ -4,7 +4,7 @@
 //! vertex from the second on is connected to the camera through its diffuse lobe, which is the slot `caustics` or `diffuse`; the
 //! balance heuristic shares every such path with the camera's (glsl/path/mis.glsl). Scenes without glossy surfaces do without.
 
-use super::paths::{FLOATS, Paths, WORD, Walk, camera_rays};
+use super::paths::{Paths, Walk, camera_rays};
 use super::sums::SlotSums;
 use super::view::View;
 use crate::frame::rays::TracedScene;
@@ -123,15 +123,11 @@ pub(super) fn advance(
     view: &View,
     depth: u32,
 ) {
-    paths.intersect(graph, Walk::FromLight, depth);
-    paths.surface(graph, scene, view, Walk::FromLight, depth);
-    if depth > 0 {
-        connect_to_camera(graph, paths, splats, view, depth);
-    }
-    if view.bounces.is_none_or(|bounces| depth < bounces) {
-        paths.scatter(graph, Walk::FromLight, depth);
-    }
-    paths.tally(graph, Walk::FromLight, depth);
+    paths.advance(graph, (scene, view), Walk::FromLight, depth, |graph| {
+        if depth > 0 {
+            connect_to_camera(graph, paths, splats, view, depth);
+        }
+    });
 }
 
 fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view: &View, depth: u32) {
@@ -142,8 +138,7 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view
         connection_rays: paths.connection_rays.write(),
         connection_light: paths.connection_light.write(),
         connections: paths.connections.read_write(),
-        specular_lobes: paths.variants.specular,
-        transmissive: paths.variants.transmissive,
+        lobes: paths.lobes.clone(),
         push: shaders::CameraPush {
             rays: camera_rays(view),
             size: view.size,
@@ -154,9 +149,7 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view
     graph.pass("particle/camera", camera).threads_indirect(paths.alive, 0);
     let splat = shaders::Splat {
         scene_rays: paths.rays.clone(),
-        connections: paths.connections.texels(WORD),
-        connection_rays: paths.connection_rays.texels(FLOATS),
-        connection_light: paths.connection_light.texels(FLOATS),
+        connections: paths.connected(),
         splats: splats.buffer.read_write(),
         push: shaders::SplatPush { scale: splats.scale, reserved: 0 },
     };

@@ -7,16 +7,14 @@
 use std::sync::Arc;
 
 use super::camera_paths::{self, Sums, Wave};
-use super::cost::TraceCost;
-use super::estimate::{Estimating, Estimator, Samples};
+use super::estimate::{Estimating, Estimator, Samples, Work};
 use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::options::PathOptions;
 use super::paths::Paths;
 use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
-use crate::frame::rays::TracedScene;
-use crate::graph::{Graph, GraphDescription, Store, Timing};
-use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
+use crate::graph::{Graph, GraphDescription};
+use crate::slot::{CausticPaths, Slot};
 use crate::vulkan::{Device, VulkanError};
 
 /// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
@@ -29,28 +27,25 @@ const NO_LIGHT_PATHS: &str = "no glossy surface, or no light but the sky's, or d
 
 /// Traces paths through one scene.
 pub(crate) struct PathTracer {
-    store: Store,
-    scene: Option<Arc<TracedScene>>,
-    timing: Timing,
-    cost: TraceCost,
+    work: Work,
 }
 
 impl PathTracer {
     pub(crate) fn new(device: &Arc<Device>) -> Result<PathTracer, VulkanError> {
-        Ok(PathTracer { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+        Ok(PathTracer { work: Work::new(device)? })
     }
 
     /// Lets the lights of the scene send out paths or not, whatever it contains: the expectation is the same. Only where something
     /// scatters specularly do paths carry what their weights need.
     #[cfg(test)]
     pub(crate) fn set_light_paths(&mut self, wanted: bool) {
-        let scene = self.scene.as_mut().and_then(Arc::get_mut).expect("a scene that nobody else holds");
+        let scene = self.work.scene.as_mut().and_then(Arc::get_mut).expect("a scene that nobody else holds");
         scene.light_paths = wanted && scene.facts.specular && scene.emitter_count > 0;
     }
 
     /// The picture that a request asks for of the scene.
     pub(crate) fn view(&self, request: &EstimateRequest) -> View {
-        let origin = self.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
+        let origin = self.work.scene.as_ref().map(|scene| scene.origin).unwrap_or_default();
         View::new(request, origin)
     }
 
@@ -67,11 +62,11 @@ impl PathTracer {
             let texels = self.trace_from_camera(view, [first_block, block_count], half, [first, count])?;
             scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
         }
-        let scene = self.scene.clone().expect("set before it is traced");
+        let scene = self.work.scene();
         if scene.needs_light_paths(view.bounces) {
             self.trace_from_lights(view, half, [first, count], &mut sums)?;
         } else {
-            self.cost.skip("particle", "emit", NO_LIGHT_PATHS);
+            self.work.cost.skip("particle", "emit", NO_LIGHT_PATHS);
         }
         Ok(sums)
     }
@@ -84,7 +79,7 @@ impl PathTracer {
         half: u32,
         [first, count]: [u32; 2],
     ) -> Result<Vec<[f32; 4]>, VulkanError> {
-        let scene = self.scene.clone().expect("set before it is traced");
+        let scene = self.work.scene();
         let capacity = capacity(view, count);
         let samples_per_wave = (capacity / (64 * block_count)).min(count);
         let mut texels = Vec::new();
@@ -98,7 +93,7 @@ impl PathTracer {
             };
             let mut depth = 0;
             loop {
-                let mut graph = Graph::new(&mut self.store);
+                let mut graph = Graph::new(&mut self.work.store);
                 let paths = Paths::declare(&mut graph, &scene, view, capacity);
                 // What is added to later: memory that a submission does not name is returned.
                 let _sums = Sums::declare(&mut graph, &wave);
@@ -115,13 +110,12 @@ impl PathTracer {
                 depth = until;
                 graph.want_buffer(paths.radiance);
                 let totals = paths.want(&mut graph);
-                let executed = graph.run(self.timing)?;
-                self.cost.note_memory(&self.store);
-                if self.cost.add_step(executed, totals) == 0 {
+                let executed = graph.run(self.work.timing)?;
+                if self.work.add_step(executed, totals) == 0 {
                     break;
                 }
             }
-            let mut graph = Graph::new(&mut self.store);
+            let mut graph = Graph::new(&mut self.work.store);
             let paths = Paths::declare(&mut graph, &scene, view, capacity);
             let sums = Sums::declare(&mut graph, &wave);
             if done == 0 {
@@ -131,11 +125,11 @@ impl PathTracer {
             graph.want_buffer(paths.radiance);
             let last = done + wave.sample_count == count;
             let read_back = last.then(|| sums.read_back(&mut graph));
-            let mut executed = graph.run(self.timing)?;
+            let mut executed = graph.run(self.work.timing)?;
             if let Some(read_back) = read_back {
                 texels = bytemuck::pod_collect_to_vec(&executed.take(read_back));
             }
-            self.cost.add(executed);
+            self.work.cost.add(executed);
         }
         Ok(texels)
     }
@@ -148,8 +142,8 @@ impl PathTracer {
         [first, count]: [u32; 2],
         sums: &mut SlotSums,
     ) -> Result<(), VulkanError> {
-        let scene = self.scene.clone().expect("set before it is traced");
-        let limit = self.store.device().limits().max_storage_buffer_range;
+        let scene = self.work.scene();
+        let limit = self.work.store.device().limits().max_storage_buffer_range;
         let all = view.size[0] * view.size[1];
         let capacity = capacity(view, count);
         for sample in first..first + count {
@@ -161,7 +155,7 @@ impl PathTracer {
                 };
                 let mut depth = 0;
                 loop {
-                    let mut graph = Graph::new(&mut self.store);
+                    let mut graph = Graph::new(&mut self.work.store);
                     let paths = Paths::declare(&mut graph, &scene, view, capacity);
                     let splats = Splats::declare(&mut graph, &scene, view, limit)?;
                     if depth == 0 {
@@ -177,35 +171,26 @@ impl PathTracer {
                     depth = until;
                     splats.want(&mut graph);
                     let totals = paths.want(&mut graph);
-                    let executed = graph.run(self.timing)?;
-                    self.cost.note_memory(&self.store);
-                    if self.cost.add_step(executed, totals) == 0 {
+                    let executed = graph.run(self.work.timing)?;
+                    if self.work.add_step(executed, totals) == 0 {
                         break;
                     }
                 }
             }
         }
-        let mut graph = Graph::new(&mut self.store);
+        let mut graph = Graph::new(&mut self.work.store);
         let splats = Splats::declare(&mut graph, &scene, view, limit)?;
         let read_back = splats.read_back(&mut graph);
-        let mut executed = graph.run(self.timing)?;
+        let mut executed = graph.run(self.work.timing)?;
         add_splats(sums, &executed.take(read_back), &scene);
-        self.cost.add(executed);
+        self.work.cost.add(executed);
         Ok(())
     }
 }
 
 impl Estimating for PathTracer {
-    fn set_scene(&mut self, scene: Arc<TracedScene>) {
-        self.scene = Some(scene);
-    }
-
-    fn release_scene(&mut self) {
-        self.scene = None;
-    }
-
-    fn set_timing(&mut self, timing: Timing) {
-        self.timing = timing;
+    fn work(&mut self) -> &mut Work {
+        &mut self.work
     }
 
     fn add_up(
@@ -219,17 +204,13 @@ impl Estimating for PathTracer {
         self.sums(&view, half, first, count)
     }
 
-    fn take_cost(&mut self) -> TraceCost {
-        std::mem::take(&mut self.cost)
-    }
-
     fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError> {
-        let scene = self.scene.clone().expect("set before it is described");
+        let scene = self.work.scene();
         let view = &self.view(request);
-        let limit = self.store.device().limits().max_storage_buffer_range;
+        let limit = self.work.store.device().limits().max_storage_buffer_range;
         let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
         let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
-        let mut graph = Graph::new(&mut self.store);
+        let mut graph = Graph::new(&mut self.work.store);
         let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
         let sums = Sums::declare(&mut graph, &wave);
         camera_paths::generate(&mut graph, &paths, view, &wave);
@@ -261,14 +242,6 @@ impl Estimator for Path {
     const SLOTS: &'static [Slot] = &Slot::ALL;
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
     type Options = PathOptions;
-
-    fn light_paths(options: &PathOptions) -> LightPaths {
-        LightPaths::up_to(options.bounces)
-    }
-
-    fn filter(options: &PathOptions) -> PixelFilter {
-        options.filter
-    }
 
     fn samples(options: &PathOptions) -> Samples {
         let PathOptions { spp, bounces, filter, seed } = *options;

@@ -9,7 +9,7 @@ use super::view::View;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::{BufferRef, Uniform};
 use crate::graph::{Dependence, Graph, ReadBack};
-use crate::shaders::groups::{self, NewPaths, SceneLights, SceneRays};
+use crate::shaders::groups::{self, Connections, Lobes, NewPaths, SceneLights, SceneRays};
 use crate::shaders::{path as shaders, types};
 use crate::slot::{CausticPaths, PixelFilter, Slot};
 
@@ -42,8 +42,6 @@ impl Walk {
 /// What kernels are compiled for, from the scene's facts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Variants {
-    pub(super) specular: u32,
-    pub(super) transmissive: u32,
     pub(super) light_paths: u32,
     /// A camera's path leaves light to photons (PHOTONS_ of glsl/path/state.glsl).
     pub(super) photons: u32,
@@ -54,8 +52,6 @@ pub(super) struct Variants {
 impl Variants {
     fn of(scene: &TracedScene, view: &View) -> Variants {
         Variants {
-            specular: u32::from(scene.facts.specular),
-            transmissive: u32::from(scene.facts.transmissive),
             light_paths: u32::from(scene.needs_light_paths(view.bounces)),
             photons: 0,
             specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
@@ -67,6 +63,7 @@ impl Variants {
 pub(super) struct Paths {
     pub(super) rays: SceneRays,
     pub(super) lights: SceneLights,
+    pub(super) lobes: Lobes,
     pub(super) variants: Variants,
     pub(super) camera: Uniform<types::Camera>,
     ways: BufferRef<[f32; 4]>,
@@ -88,17 +85,18 @@ pub(super) struct Paths {
 impl Paths {
     /// Buffers for `capacity` paths.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, view: &View, capacity: u32) -> Paths {
-        let variants = Variants::of(scene, view);
+        let facts = &scene.facts;
         let paths = capacity as usize;
-        let lobes = 1 + variants.specular as usize;
-        let vertex_texels = if variants.specular != 0 { 5 } else { 2 };
+        let lobe_count = 1 + usize::from(facts.specular);
+        let vertex_texels = if facts.specular { 5 } else { 2 };
         let queue = QUEUE_HEADER + paths;
         let totals = graph.buffer("path.totals", 4);
         graph.fill_buffer("path/clear-totals", totals, 0);
         Paths {
             rays: scene.rays(graph),
             lights: scene.lights(graph),
-            variants,
+            lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
+            variants: Variants::of(scene, view),
             camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
             ways: graph.buffer("path.rays", 2 * paths),
             states: graph.buffer("path.states", paths),
@@ -107,7 +105,7 @@ impl Paths {
             hits: graph.buffer("path.hits", paths),
             vertices: graph.buffer("path.vertices", vertex_texels * paths),
             connection_rays: graph.buffer("path.connection_rays", 2 * paths),
-            connection_light: graph.buffer("path.connection_light", lobes * paths),
+            connection_light: graph.buffer("path.connection_light", lobe_count * paths),
             active: [graph.buffer("path.active.0", queue), graph.buffer("path.active.1", queue)],
             alive: graph.buffer("path.alive", queue),
             connections: graph.buffer("path.connections", queue),
@@ -150,6 +148,34 @@ impl Paths {
         }
     }
 
+    /// The connections as kernels follow them.
+    pub(super) fn connected(&self) -> Connections {
+        Connections {
+            connections: self.connections.texels(WORD),
+            connection_rays: self.connection_rays.texels(FLOATS),
+            connection_light: self.connection_light.texels(FLOATS),
+        }
+    }
+
+    /// Takes the paths to vertex number `depth`, counted from 0, lets them `meet` there what they look for, and sends them on.
+    pub(super) fn advance(
+        &self,
+        graph: &mut Graph<'_>,
+        (scene, view): (&TracedScene, &View),
+        walk: Walk,
+        depth: u32,
+        meet: impl FnOnce(&mut Graph<'_>),
+    ) {
+        self.intersect(graph, walk, depth);
+        self.surface(graph, scene, view, walk, depth);
+        meet(graph);
+        // What scatters at the first visible surface is no bounce, and that is where the paths of the camera begin.
+        if view.bounces.is_none_or(|bounces| depth + walk.flag() <= bounces) {
+            self.scatter(graph, walk, depth);
+        }
+        self.tally(graph, walk, depth);
+    }
+
     /// Empties all queues, for a wave that starts.
     pub(super) fn clear_queues(&self, graph: &mut Graph<'_>, walk: Walk) {
         let clear = shaders::Clear {
@@ -162,7 +188,7 @@ impl Paths {
     }
 
     /// Counts the rays of the step to vertex number `depth` and empties its queues.
-    pub(super) fn tally(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+    fn tally(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
         let tally = shaders::Tally {
             active_paths: self.active(depth).read_write(),
             alive_paths: self.alive.read_write(),
@@ -174,7 +200,7 @@ impl Paths {
     }
 
     /// What the paths of vertex number `depth` meet.
-    pub(super) fn intersect(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+    fn intersect(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
         let active = self.active(depth);
         let intersect = shaders::Intersect {
             scene_rays: self.rays.clone(),
@@ -185,8 +211,8 @@ impl Paths {
     }
 
     /// What it is made of; where nothing scatters the paths end.
-    pub(super) fn surface(&self, graph: &mut Graph<'_>, scene: &TracedScene, view: &View, walk: Walk, depth: u32) {
-        let (active, variants) = (self.active(depth), self.variants);
+    fn surface(&self, graph: &mut Graph<'_>, scene: &TracedScene, view: &View, walk: Walk, depth: u32) {
+        let active = self.active(depth);
         let ends = view.bounces.is_some_and(|bounces| depth > bounces);
         let pixels = view.size.map(|side| side as f32);
         let surface = shaders::Surface {
@@ -197,8 +223,7 @@ impl Paths {
             vertices: self.vertices.write(),
             path_radiance: self.radiance.read_write(),
             alive_queue: self.alive.read_write(),
-            specular_lobes: variants.specular,
-            transmissive: variants.transmissive,
+            lobes: self.lobes.clone(),
             pixel_footprint: u32::from(view.filter == PixelFilter::Center && scene.facts.textured),
             push: shaders::SurfacePush {
                 sky: scene.sky,
@@ -214,7 +239,7 @@ impl Paths {
     }
 
     /// Sends the paths on from vertex number `depth`.
-    pub(super) fn scatter(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+    fn scatter(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
         let scatter = shaders::Scatter {
             scene_rays: self.rays.clone(),
             paths: self.group(walk, depth),
@@ -225,8 +250,7 @@ impl Paths {
                 new_seeds: self.seeds.read_write(),
                 new_paths: self.active(depth + 1).read_write(),
             },
-            specular_lobes: self.variants.specular,
-            transmissive: self.variants.transmissive,
+            lobes: self.lobes.clone(),
             push: shaders::ScatterPush { depth, reserved: 0 },
         };
         graph.pass(&walk.pass("scatter"), scatter).threads_indirect(self.alive, 0);

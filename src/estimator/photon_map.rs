@@ -83,8 +83,7 @@ impl PhotonMap {
             paths: paths.group(Walk::FromCamera, depth),
             points: self.points.read_write(),
             point_queue: self.point_queue.read_write(),
-            specular_lobes: paths.variants.specular,
-            transmissive: paths.variants.transmissive,
+            lobes: paths.lobes.clone(),
             push: shaders::MeasurePush { depth, reserved: 0 },
         };
         graph.pass("sppm/measure", measure).threads_indirect(paths.alive, 0);
@@ -109,7 +108,7 @@ impl PhotonMap {
             photons: self.photons.read_write(),
             photon_queue: self.photon_queue.read_write(),
             bucket_counts: self.bucket_counts.read_write(),
-            specular_lobes: paths.variants.specular,
+            lobes: paths.lobes.clone(),
             push: shaders::StorePush { depth, bits: self.bits, inverse_cell: disc.inverse_cell(), reserved: 0 },
         };
         graph.pass("sppm/store", store).threads_indirect(paths.alive, 0);
@@ -139,7 +138,7 @@ impl PhotonMap {
             bucket_starts: self.bucket_starts.texels(WORD),
             photon_order: self.photon_order.texels(WORD),
             path_radiance: paths.radiance.read_write(),
-            specular_lobes: paths.variants.specular,
+            lobes: paths.lobes.clone(),
             push: shaders::GatherPush {
                 radius: disc.radius,
                 inverse_cell: disc.inverse_cell(),

@@ -21,8 +21,7 @@
 //! 2n + h + 1, so that both halves shrink alike.
 
 use super::camera_paths::{self, Sums, Wave};
-use super::cost::TraceCost;
-use super::estimate::{Estimating, Estimator, Samples};
+use super::estimate::{Estimating, Estimator, Samples, Work};
 use super::light_paths::{self, Swarm, scale_of};
 use super::options::SppmOptions;
 use super::paths::{Paths, Walk};
@@ -32,8 +31,8 @@ use std::sync::Arc;
 use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::frame::rays::TracedScene;
-use crate::graph::{Executed, Graph, GraphDescription, ReadBack, Store, Timing};
-use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
+use crate::graph::{Executed, Graph, GraphDescription, ReadBack};
+use crate::slot::{CausticPaths, Slot};
 use crate::vulkan::{Device, VulkanError};
 
 /// The share of the photons that a pass keeps.
@@ -53,18 +52,13 @@ const DEPTHS_PER_SUBMISSION: u32 = 12;
 
 /// Maps photons of one scene.
 pub(crate) struct PhotonMapper {
-    store: Store,
-    scene: Option<Arc<TracedScene>>,
-    timing: Timing,
-    cost: TraceCost,
+    work: Work,
 }
 
 /// A picture being made.
 struct Mapping<'a> {
-    store: &'a mut Store,
-    cost: &'a mut TraceCost,
+    work: &'a mut Work,
     scene: &'a TracedScene,
-    timing: Timing,
     view: View,
     run_blocks: u32,
     swarm_paths: u32,
@@ -82,21 +76,19 @@ struct Pass {
 
 impl PhotonMapper {
     pub(crate) fn new(device: &Arc<Device>) -> Result<PhotonMapper, VulkanError> {
-        Ok(PhotonMapper { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+        Ok(PhotonMapper { work: Work::new(device)? })
     }
 
     fn mapping<'a>(&'a mut self, scene: &'a TracedScene, request: &EstimateRequest) -> Mapping<'a> {
         let [width, height] = request.size;
         let blocks = width.div_ceil(8) * height.div_ceil(8);
-        let largest = self.store.device().limits().max_storage_buffer_range;
+        let largest = self.work.store.device().limits().max_storage_buffer_range;
         let paths = RUN_PATHS.min(largest / BYTES_PER_PATH).max(64);
         let runs = blocks.div_ceil(paths / 64).max(1);
         let run_blocks = blocks.div_ceil(runs);
         Mapping {
-            store: &mut self.store,
-            cost: &mut self.cost,
+            work: &mut self.work,
             scene,
-            timing: self.timing,
             view: View::new(request, scene.origin),
             run_blocks,
             swarm_paths: SWARM_PATHS.min(64 * run_blocks),
@@ -138,7 +130,7 @@ impl Mapping<'_> {
 
     /// Declares what stands between the submissions of a pass.
     fn declare<'s>(&'s mut self, wave: &Wave) -> (Graph<'s>, &'s TracedScene, &'s View, Paths, PhotonMap, Sums) {
-        let mut graph = Graph::new(self.store);
+        let mut graph = Graph::new(&mut self.work.store);
         let mut paths = Paths::declare(&mut graph, self.scene, &self.view, 64 * self.run_blocks);
         let all = self.scene.sky == [0.0; 3] && !self.scene.ranged_lights;
         // PHOTONS_ALL or PHOTONS_SOME of glsl/path/state.glsl; light paths are not connected to the camera, and weigh nothing.
@@ -153,7 +145,7 @@ impl Mapping<'_> {
         let all = self.view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(2));
         let mut depth = 0;
         loop {
-            let timing = self.timing;
+            let timing = self.work.timing;
             let (mut graph, scene, view, paths, map, _) = self.declare(&pass.wave);
             if depth == 0 {
                 if pass.first {
@@ -171,8 +163,7 @@ impl Mapping<'_> {
             graph.want_buffer(paths.radiance);
             let totals = paths.want(&mut graph);
             let executed = graph.run(timing)?;
-            self.cost.note_memory(self.store);
-            if self.cost.add_step(executed, totals) == 0 {
+            if self.work.add_step(executed, totals) == 0 {
                 return Ok(());
             }
         }
@@ -196,7 +187,7 @@ impl Mapping<'_> {
                     photons = 0;
                     continue;
                 }
-                let timing = self.timing;
+                let timing = self.work.timing;
                 let (mut graph, scene, view, paths, map, _) = self.declare(&pass.wave);
                 if depth == 0 {
                     light_paths::emit(&mut graph, &paths, scene, view, &swarm);
@@ -210,8 +201,7 @@ impl Mapping<'_> {
                 let totals = paths.want(&mut graph);
                 let mut executed = graph.run(timing)?;
                 [.., photons] = words(&mut executed, stored);
-                self.cost.note_memory(self.store);
-                active = self.cost.add_step(executed, totals);
+                active = self.work.add_step(executed, totals);
             }
         }
         if photons > 0 { self.gather(pass) } else { Ok(()) }
@@ -219,25 +209,25 @@ impl Mapping<'_> {
 
     /// Finds how much surface there is around each measurement point.
     fn probe(&mut self, pass: &Pass) -> Result<(), VulkanError> {
-        let timing = self.timing;
+        let timing = self.work.timing;
         let (mut graph, _, _, paths, map, _) = self.declare(&pass.wave);
         map.probe(&mut graph, &paths, pass.disc);
         map.want(&mut graph);
         paths.want(&mut graph);
-        graph.run(timing).map(|executed| self.cost.add(executed))
+        graph.run(timing).map(|executed| self.work.cost.add(executed))
     }
 
     fn gather(&mut self, pass: &Pass) -> Result<(), VulkanError> {
-        let timing = self.timing;
+        let timing = self.work.timing;
         let (mut graph, _, view, paths, map, _) = self.declare(&pass.wave);
         map.gather(&mut graph, &paths, view, pass.disc);
         map.want(&mut graph);
-        graph.run(timing).map(|executed| self.cost.add(executed))
+        graph.run(timing).map(|executed| self.work.cost.add(executed))
     }
 
     /// Adds the pass to the sums; after the `last` one these are returned as [`Sums::read_back`] leaves them.
     fn add_pass(&mut self, pass: &Pass, last: bool) -> Result<Option<Vec<[f32; 4]>>, VulkanError> {
-        let timing = self.timing;
+        let timing = self.work.timing;
         let (mut graph, _, _, paths, _, sums) = self.declare(&pass.wave);
         if pass.first {
             sums.clear(&mut graph);
@@ -247,22 +237,14 @@ impl Mapping<'_> {
         let read_back = last.then(|| sums.read_back(&mut graph));
         let mut executed = graph.run(timing)?;
         let texels = read_back.map(|read_back| bytemuck::pod_collect_to_vec(&executed.take(read_back)));
-        self.cost.add(executed);
+        self.work.cost.add(executed);
         Ok(texels)
     }
 }
 
 impl Estimating for PhotonMapper {
-    fn set_scene(&mut self, scene: Arc<TracedScene>) {
-        self.scene = Some(scene);
-    }
-
-    fn release_scene(&mut self) {
-        self.scene = None;
-    }
-
-    fn set_timing(&mut self, timing: Timing) {
-        self.timing = timing;
+    fn work(&mut self) -> &mut Work {
+        &mut self.work
     }
 
     fn add_up(
@@ -272,17 +254,13 @@ impl Estimating for PhotonMapper {
         first: u32,
         count: u32,
     ) -> Result<SlotSums, VulkanError> {
-        let scene = self.scene.clone().expect("set before it is asked for samples");
+        let scene = self.work.scene();
         self.mapping(&scene, request).sums_of_passes(half, [first, count])
-    }
-
-    fn take_cost(&mut self) -> TraceCost {
-        std::mem::take(&mut self.cost)
     }
 
     /// The steps of one pass with the first vertices of its paths; those of later vertices are the same.
     fn describe(&mut self, request: &EstimateRequest) -> Result<GraphDescription, VulkanError> {
-        let scene = self.scene.clone().expect("set before it is described");
+        let scene = self.work.scene();
         let mut mapping = self.mapping(&scene, request);
         let wave = Wave {
             first_block: 0,
@@ -318,14 +296,6 @@ impl Estimator for Sppm {
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
     type Options = SppmOptions;
 
-    fn light_paths(options: &SppmOptions) -> LightPaths {
-        LightPaths::up_to(options.bounces)
-    }
-
-    fn filter(options: &SppmOptions) -> PixelFilter {
-        options.filter
-    }
-
     fn samples(options: &SppmOptions) -> Samples {
         let SppmOptions { spp, bounces, filter, seed } = *options;
         Samples { spp, bounces, caustics: CausticPaths::All, filter, seed }
@@ -345,19 +315,13 @@ fn advance_from_camera(
     view: &View,
     depth: u32,
 ) {
-    paths.intersect(graph, Walk::FromCamera, depth);
-    paths.surface(graph, scene, view, Walk::FromCamera, depth);
-    if view.bounces.is_none_or(|bounces| depth <= bounces) {
-        if scene.emitter_count > 0 {
-            camera_paths::find_light(graph, paths, scene, view, depth);
-        }
+    paths.advance(graph, (scene, view), Walk::FromCamera, depth, |graph| {
+        camera_paths::find_light(graph, paths, scene, view, depth);
         // Photons scattered once at least.
         if scene.emitter_count > 0 && view.bounces.is_none_or(|bounces| depth < bounces) {
             map.measure(graph, paths, depth);
         }
-        paths.scatter(graph, Walk::FromCamera, depth);
-    }
-    paths.tally(graph, Walk::FromCamera, depth);
+    });
 }
 
 /// As [`advance_from_camera`].
@@ -370,15 +334,11 @@ fn advance_from_light(
     disc: Disc,
     depth: u32,
 ) {
-    paths.intersect(graph, Walk::FromLight, depth);
-    paths.surface(graph, scene, view, Walk::FromLight, depth);
-    if depth > 0 {
-        map.store(graph, paths, disc, depth);
-    }
-    if view.bounces.is_none_or(|bounces| depth < bounces) {
-        paths.scatter(graph, Walk::FromLight, depth);
-    }
-    paths.tally(graph, Walk::FromLight, depth);
+    paths.advance(graph, (scene, view), Walk::FromLight, depth, |graph| {
+        if depth > 0 {
+            map.store(graph, paths, disc, depth);
+        }
+    });
 }
 
 /// Four words that were read back.

@@ -11,6 +11,7 @@ use crate::frame::view_layout::TILE;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
 use crate::method::FrameCx;
+use crate::shaders::groups::Lobes;
 use crate::shaders::photons::{Emit, EmitPush, Scatter, ScatterPush};
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -86,8 +87,7 @@ pub(crate) fn scatter(
         arrival_beams: arrived.beams.texels(FLOATS),
         beams: rays.beams.write(),
         counts: choice.counts.read_write(),
-        specular_lobes: 1,
-        transmissive: u32::from(cx.frame.facts.transmissive),
+        lobes: Lobes { specular_lobes: 1, transmissive: u32::from(cx.frame.facts.transmissive) },
         first: u32::from(rays.stage == 0),
         push: ScatterPush {
             stage: rays.stage as u32,

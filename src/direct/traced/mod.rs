@@ -17,7 +17,7 @@ use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::shaders::direct::{Directions, DirectionsPush, Emitters, EmittersPush, Punctual, PunctualPush};
-use crate::shaders::groups::{SceneLights, SceneRays};
+use crate::shaders::groups::{DirectSum, Lobes, SceneLights, SceneRays};
 use crate::slot::{LightPaths, Slot};
 
 /// Rays to the lights: exact shadows; noise where light comes from surfaces or the sky.
@@ -78,21 +78,27 @@ struct TracedFrame<'a> {
 }
 
 impl TracedFrame<'_> {
-    fn image(&self, graph: &mut Graph<'_>, name: &str) -> ImageRef {
-        graph.image(name, vk::Format::R32G32B32A32_SFLOAT, self.buffer.size)
+    /// What is `found` already with more added to it.
+    fn sum(&self, graph: &mut Graph<'_>, name: &str, found: Option<ImageRef>) -> (ImageRef, DirectSum) {
+        let direct = graph.image(name, vk::Format::R32G32B32A32_SFLOAT, self.buffer.size);
+        let (before, adds) = (SampledImage::of(found), u32::from(found.is_some()));
+        (direct, DirectSum { before, direct: direct.write(), adds })
+    }
+
+    /// What the G-buffer knows of: reflection alone.
+    fn lobes(&self) -> Lobes {
+        Lobes { specular_lobes: self.buffer.group.has_specular, transmissive: 0 }
     }
 
     fn punctual(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
-        let direct = self.image(graph, "direct.punctual");
+        let (direct, direct_sum) = self.sum(graph, "direct.punctual", found);
         let light_count = self.scene.punctual_count;
         let pass = Punctual {
             surface: self.buffer.group.clone(),
             scene_rays: self.rays.clone(),
             scene_lights: self.lights.clone(),
-            before: SampledImage::of(found),
-            direct: direct.write(),
-            specular_lobes: self.buffer.group.has_specular,
-            adds: u32::from(found.is_some()),
+            direct_sum,
+            lobes: self.lobes(),
             push: PunctualPush { shift: self.shift, light_count },
         };
         graph.pass("direct/traced/punctual", pass).note("lights", u64::from(light_count)).pixels(self.buffer.size);
@@ -100,16 +106,13 @@ impl TracedFrame<'_> {
     }
 
     fn emitters(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
-        let direct = self.image(graph, "direct.emitters");
+        let (direct, direct_sum) = self.sum(graph, "direct.emitters", found);
         let pass = Emitters {
             surface: self.buffer.group.clone(),
             scene_rays: self.rays.clone(),
             scene_lights: self.lights.clone(),
-            before: SampledImage::of(found),
-            direct: direct.write(),
-            specular_lobes: self.buffer.group.has_specular,
-            transmissive: 0,
-            adds: u32::from(found.is_some()),
+            direct_sum,
+            lobes: self.lobes(),
             push: EmittersPush {
                 shift: self.shift,
                 emitter_count: self.scene.emissive_count,
@@ -122,16 +125,13 @@ impl TracedFrame<'_> {
     }
 
     fn directions(&self, graph: &mut Graph<'_>, found: Option<ImageRef>) -> ImageRef {
-        let direct = self.image(graph, "direct.directions");
+        let (direct, direct_sum) = self.sum(graph, "direct.directions", found);
         let pass = Directions {
             surface: self.buffer.group.clone(),
             scene_rays: self.rays.clone(),
             scene_lights: self.lights.clone(),
-            before: SampledImage::of(found),
-            direct: direct.write(),
-            specular_lobes: self.buffer.group.has_specular,
-            transmissive: 0,
-            adds: u32::from(found.is_some()),
+            direct_sum,
+            lobes: self.lobes(),
             finds_emitters: u32::from(self.scene.emissive_count > 0),
             push: DirectionsPush {
                 shift: self.shift,
