@@ -16,7 +16,7 @@ use crate::vulkan::{Device, VulkanError};
 pub(crate) trait Estimator {
     /// The name on the command line.
     const NAME: &'static str;
-    const SLOTS: &'static [Slot];
+    const SLOTS: &'static [Slot] = &Slot::ALL;
     /// Piece and name of the pass that a frame begins with: the row that says that nothing changed.
     const FIRST_PASS: [&'static str; 2];
     type Options: Options;

@@ -14,7 +14,7 @@ use super::paths::Paths;
 use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::graph::{Graph, GraphDescription};
-use crate::slot::{CausticPaths, Slot};
+use crate::slot::CausticPaths;
 use crate::vulkan::{Device, VulkanError};
 
 /// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
@@ -239,7 +239,6 @@ pub(crate) struct Path;
 
 impl Estimator for Path {
     const NAME: &'static str = "path";
-    const SLOTS: &'static [Slot] = &Slot::ALL;
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
     type Options = PathOptions;
 

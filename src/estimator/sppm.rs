@@ -32,7 +32,7 @@ use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::frame::rays::TracedScene;
 use crate::graph::{Executed, Graph, GraphDescription, ReadBack};
-use crate::slot::{CausticPaths, Slot};
+use crate::slot::CausticPaths;
 use crate::vulkan::{Device, VulkanError};
 
 /// The share of the photons that a pass keeps.
@@ -292,7 +292,6 @@ pub(crate) struct Sppm;
 
 impl Estimator for Sppm {
     const NAME: &'static str = "sppm";
-    const SLOTS: &'static [Slot] = &Slot::ALL;
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
     type Options = SppmOptions;
 

@@ -4,10 +4,9 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use super::probe::{Pixel, Vpl, probe, slot, vpls};
+use super::probe::{Pixel, Vpl, diffuse_and_its, probe, vpls};
 use super::scenes::{builtin, request, settings};
 use super::session::Session;
-use crate::renderer::Slot;
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -30,13 +29,7 @@ fn a_pixel_gathers_the_sum_over_all_lights() {
         let request = request(SIZE, scene.camera_view(None).expect("its camera"), &[]);
         let settings = settings(&[("rsm.vpls", count)]);
         let frame = probe(&session, &scene, &settings, &request, |graph, declared| {
-            let buffer = &declared.gbuffer;
-            vec![
-                graph.read_back(buffer.depth),
-                graph.read_back(buffer.surface),
-                slot(graph, declared, Slot::Diffuse),
-                vpls(graph, declared),
-            ]
+            diffuse_and_its(vpls(graph, declared), graph, declared)
         });
         let lights = frame.vpls(3);
         let diffuse_alone = !scene.facts().specular;

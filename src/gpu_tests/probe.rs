@@ -103,6 +103,13 @@ pub(super) fn slot(graph: &mut Graph<'_>, declared: &Declared, slot: Slot) -> Re
     graph.read_back(declared.slot(slot).expect("something fills the slot"))
 }
 
+/// What a pixel's diffuse light is checked by: depth, surface, the slot, and the virtual point lights.
+pub(super) fn diffuse_and_its(lights: ReadBack, graph: &mut Graph<'_>, declared: &Declared) -> Vec<ReadBack> {
+    let buffer = &declared.gbuffer;
+    let [depth, surface] = [buffer.depth, buffer.surface].map(|image| graph.read_back(image));
+    vec![depth, surface, slot(graph, declared, Slot::Diffuse), lights]
+}
+
 fn word(bytes: &[u8]) -> u32 {
     u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
 }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::{DAffine3, DVec3};
 
-use super::probe::{Pixel, Vpl, probe, slot};
+use super::probe::{Pixel, Vpl, diffuse_and_its, probe};
 use super::scenes::{add_light, box_faces, builtin, lambert, place, quad, request, view, vpl_settings};
 use super::session::Session;
 use crate::renderer::{ColorImage, FrameRequest, Preset, Settings, Slot, Technique};
@@ -90,13 +90,8 @@ fn rays_find_what_brute_force_finds() {
     let request = request(SIZE, eye, &[]);
     let settings = with("traced", &[("vpl.shading", "pixels"), ("vpl.count", "4096")]);
     let frame = probe(&session, &scene, &settings, &request, |graph, declared| {
-        let buffer = &declared.gbuffer;
-        vec![
-            graph.read_back(buffer.depth),
-            graph.read_back(buffer.surface),
-            slot(graph, declared, Slot::Diffuse),
-            graph.read_back_buffer(declared.vpl.as_ref().expect("vpl runs").vpls),
-        ]
+        let lights = graph.read_back_buffer(declared.vpl.as_ref().expect("vpl runs").vpls);
+        diffuse_and_its(lights, graph, declared)
     });
     let (triangles, vpls) = (triangles(&scene, frame.origin), frame.vpls(3));
     let pixels = frame.pixels([0, 1], SIZE);

@@ -11,9 +11,7 @@ use super::scene_lists::{Blocks, ListInputs, MOST_LEVELS, SceneLists, draw_views
 use crate::frame::geometry::{Attributes, draw_list};
 use crate::frame::scene_data::DrawnInstance;
 use crate::graph::{Dependence, Graph};
-use crate::shaders::photon_lists::{
-    Append, AppendMasked, Coarser, CoarserPush, Occupancy, OccupancyPush,
-};
+use crate::shaders::photon_lists::{Append, AppendMasked, Coarser, CoarserPush, Occupancy, OccupancyPush};
 use crate::vulkan::RasterState;
 
 /// The pool's first size, nodes for each texel of each view.
