@@ -14,6 +14,9 @@ use crate::vulkan::{Device, VulkanError};
 /// Declares a method's passes with its options out of all settings.
 type Declare = fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>;
 
+/// Makes an estimator on a device.
+type Open = fn(&Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>;
+
 /// A method, with its options taken from all settings.
 pub(crate) struct MethodEntry {
     pub(crate) slot: Slot,
@@ -32,7 +35,7 @@ pub(crate) struct EstimatorEntry {
     pub(crate) light_paths: fn(&Settings) -> LightPaths,
     pub(crate) filter: fn(&Settings) -> PixelFilter,
     pub(crate) samples: fn(&Settings) -> Samples,
-    pub(crate) open: fn(&Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>,
+    pub(crate) open: Open,
 }
 
 /// What fills a slot.
