@@ -10,7 +10,7 @@ use crate::graph::{Executed, GraphDescription, ReadBack, Store, Timing};
 use crate::method::Options;
 use crate::scene::CameraView;
 use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::{Pipelines, VulkanError};
 
 /// One way to fill several slots in one run, by unbiased or consistent sums of samples.
 pub(crate) trait Estimator {
@@ -38,7 +38,7 @@ pub(crate) trait Estimator {
     ///
     /// # Errors
     /// Exhausted device memory.
-    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>;
+    fn open(pipelines: &Arc<Pipelines>) -> Result<Box<dyn Estimating>, VulkanError>;
 }
 
 /// What is asked of an estimator, whatever the picture.
@@ -69,8 +69,8 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    pub(super) fn new(device: &Arc<Device>) -> Result<Work, VulkanError> {
-        Ok(Work { store: Store::new(device)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+    pub(super) fn new(pipelines: &Arc<Pipelines>) -> Result<Work, VulkanError> {
+        Ok(Work { store: Store::new(pipelines)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
     }
 
     /// Takes down what a submission cost that advanced paths. How many go on.

@@ -15,7 +15,7 @@ use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
 use super::view::{EstimateRequest, View};
 use crate::graph::{Graph, GraphDescription};
 use crate::slot::CausticPaths;
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::{Pipelines, VulkanError};
 
 /// Paths of a wave at most: on a GPU enough to fill it, on a CPU few enough to stay near the caches.
 const WAVE_PATHS: u32 = 1 << 18;
@@ -31,8 +31,8 @@ pub(crate) struct PathTracer {
 }
 
 impl PathTracer {
-    pub(crate) fn new(device: &Arc<Device>) -> Result<PathTracer, VulkanError> {
-        Ok(PathTracer { work: Work::new(device)? })
+    pub(crate) fn new(pipelines: &Arc<Pipelines>) -> Result<PathTracer, VulkanError> {
+        Ok(PathTracer { work: Work::new(pipelines)? })
     }
 
     /// Lets the lights of the scene send out paths or not, whatever it contains: the expectation is the same. Only where something
@@ -247,8 +247,8 @@ impl Estimator for Path {
         Samples { spp, bounces, caustics: CausticPaths::All, filter, seed }
     }
 
-    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError> {
-        Ok(Box::new(PathTracer::new(device)?))
+    fn open(pipelines: &Arc<Pipelines>) -> Result<Box<dyn Estimating>, VulkanError> {
+        Ok(Box::new(PathTracer::new(pipelines)?))
     }
 }
 

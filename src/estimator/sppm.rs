@@ -33,7 +33,7 @@ use super::view::{EstimateRequest, View};
 use crate::frame::rays::TracedScene;
 use crate::graph::{Executed, Graph, GraphDescription, ReadBack};
 use crate::slot::CausticPaths;
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::{Pipelines, VulkanError};
 
 /// The share of the photons that a pass keeps.
 const ALPHA: f64 = 2.0 / 3.0;
@@ -75,8 +75,8 @@ struct Pass {
 }
 
 impl PhotonMapper {
-    pub(crate) fn new(device: &Arc<Device>) -> Result<PhotonMapper, VulkanError> {
-        Ok(PhotonMapper { work: Work::new(device)? })
+    pub(crate) fn new(pipelines: &Arc<Pipelines>) -> Result<PhotonMapper, VulkanError> {
+        Ok(PhotonMapper { work: Work::new(pipelines)? })
     }
 
     fn mapping<'a>(&'a mut self, scene: &'a TracedScene, request: &EstimateRequest) -> Mapping<'a> {
@@ -300,8 +300,8 @@ impl Estimator for Sppm {
         Samples { spp, bounces, caustics: CausticPaths::All, filter, seed }
     }
 
-    fn open(device: &Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError> {
-        Ok(Box::new(PhotonMapper::new(device)?))
+    fn open(pipelines: &Arc<Pipelines>) -> Result<Box<dyn Estimating>, VulkanError> {
+        Ok(Box::new(PhotonMapper::new(pipelines)?))
     }
 }
 

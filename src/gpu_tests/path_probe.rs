@@ -52,7 +52,6 @@ pub(super) struct Traced {
     pub(super) cost: TraceCost,
 }
 
-/// Pipelines live as long as this.
 pub(super) struct Tracer {
     device: Arc<Device>,
     tracer: PathTracer,
@@ -61,7 +60,7 @@ pub(super) struct Tracer {
 impl Tracer {
     pub(super) fn new(session: &Session) -> Tracer {
         let device = session.context.shared_device().clone();
-        Tracer { tracer: PathTracer::new(&device).expect("a tracer"), device }
+        Tracer { tracer: PathTracer::new(session.context.pipelines()).expect("a tracer"), device }
     }
 
     pub(super) fn trace(&mut self, scene: &Scene, ask: &Ask) -> Traced {

@@ -41,7 +41,7 @@ impl Session {
     }
 
     pub(crate) fn store(&self) -> Store {
-        Store::new(self.context.shared_device()).expect("a store")
+        Store::new(self.context.pipelines()).expect("a store")
     }
 
     /// A frame by a renderer that made none before.

@@ -31,7 +31,11 @@ fn means(sums: &SlotSums) -> [f64; 5] {
 fn photon_source(session: &Session, scene: &Scene, request: &EstimateRequest) -> RequestSource {
     let device = session.context.shared_device();
     let scene = Arc::new(TracedScene::new(device, scene).expect("a scene that fits"));
-    RequestSource::new(Box::new(PhotonMapper::new(device).expect("a mapper")), scene, request.clone())
+    RequestSource::new(
+        Box::new(PhotonMapper::new(session.context.pipelines()).expect("a mapper")),
+        scene,
+        request.clone(),
+    )
 }
 
 fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, passes: u32) -> SlotSums {
@@ -43,7 +47,7 @@ fn by_photons(session: &Session, scene: &Scene, camera: &CameraView, bounces: Op
 fn by_paths(session: &Session, scene: &Scene, camera: &CameraView, bounces: Option<u32>, samples: u32) -> SlotSums {
     let request = request(SIZE, camera.clone(), bounces);
     let device = session.context.shared_device();
-    let mut tracer = PathTracer::new(device).expect("a tracer");
+    let mut tracer = PathTracer::new(session.context.pipelines()).expect("a tracer");
     tracer.set_scene(Arc::new(TracedScene::new(device, scene).expect("a scene that fits")));
     let view = tracer.view(&request);
     tracer.sums(&view, 0, 0, samples).expect("sums")

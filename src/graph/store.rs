@@ -32,7 +32,7 @@ pub(super) struct StoredBuffer {
 /// Memory, pipelines and queries of one renderer.
 pub(crate) struct Store {
     pub(super) device: Arc<Device>,
-    pub(super) pipelines: Pipelines,
+    pub(super) pipelines: Arc<Pipelines>,
     pub(super) recorder: Recorder,
     pub(super) queries: Queries,
     pub(super) images: HashMap<String, StoredImage>,
@@ -51,13 +51,14 @@ pub(super) const MAX_PASSES: u32 = 4096;
 pub(super) const MAX_COUNTERS: u64 = 4 * MAX_PASSES as u64;
 
 impl Store {
-    pub(crate) fn new(device: &Arc<Device>) -> Result<Store, VulkanError> {
+    pub(crate) fn new(pipelines: &Arc<Pipelines>) -> Result<Store, VulkanError> {
+        let device = pipelines.device();
         let host_visible = |name: &str, bytes| {
             Buffer::new(device, name, bytes, vk::BufferUsageFlags::TRANSFER_DST, Location::ReadBack)
         };
         Ok(Store {
             device: device.clone(),
-            pipelines: Pipelines::new(device),
+            pipelines: pipelines.clone(),
             recorder: Recorder::new(device)?,
             queries: Queries::new(device, 2 * MAX_PASSES + 2)?,
             images: HashMap::new(),
@@ -78,7 +79,7 @@ impl Store {
         &self.device
     }
 
-    pub(crate) fn pipelines(&self) -> &Pipelines {
+    pub(crate) fn pipelines(&self) -> &Arc<Pipelines> {
         &self.pipelines
     }
 

@@ -56,9 +56,9 @@ pub(super) fn source(context: &Context, scene: &Scene, request: &ReferenceReques
     let device = context.shared_device();
     let request = EstimateRequest { size, camera, bounces, caustics, filter, seed: seed ^ SEEDS_OF_REFERENCES };
     let running = match estimator {
-        Estimator::Path => Path::open(device)?,
+        Estimator::Path => Path::open(context.pipelines())?,
         Estimator::Sppm if caustics != CausticPaths::All => return Err(Error::SppmCaustics),
-        Estimator::Sppm => Sppm::open(device)?,
+        Estimator::Sppm => Sppm::open(context.pipelines())?,
     };
     Ok(RequestSource::new(running, Arc::new(TracedScene::new(device, scene)?), request))
 }

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use crate::method::Error;
-use crate::vulkan::{self, ContextOptions, Device, DeviceReport};
+use crate::vulkan::{self, ContextOptions, Device, DeviceReport, Pipelines};
 
-/// A Vulkan device. Cloning shares it; it is destroyed with the last renderer on it.
+/// A Vulkan device, and the pipelines that renderers had it compile. Cloning shares both; they are destroyed with the last renderer on it.
 #[derive(Clone)]
 pub struct Context {
     device: Arc<Device>,
+    pipelines: Arc<Pipelines>,
 }
 
 impl Context {
@@ -18,7 +19,9 @@ impl Context {
     /// A sentence that says what to install, when there is no loader, no device or no validation layer; which devices
     /// there are, when none matches; what the device lacks and what needs it, when it cannot be used.
     pub fn new(options: &ContextOptions) -> Result<Context, Error> {
-        Ok(Context { device: Device::new(options)? })
+        let device = Device::new(options)?;
+        let pipelines = Pipelines::new(&device);
+        Ok(Context { device, pipelines })
     }
 
     /// All devices of this machine, usable or not.
@@ -42,6 +45,10 @@ impl Context {
     /// Names and bytes of the device allocations that are alive. Empty once all renderers are gone.
     pub fn live_allocations(&self) -> Vec<(String, u64)> {
         self.device.live_allocations()
+    }
+
+    pub(crate) fn pipelines(&self) -> &Arc<Pipelines> {
+        &self.pipelines
     }
 
     pub(crate) fn shared_device(&self) -> &Arc<Device> {

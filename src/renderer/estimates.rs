@@ -9,7 +9,7 @@ use crate::estimator::{EstimateRequest, Estimating, Noise, Samples, SlotSums, Tr
 use crate::frame::rays::TracedScene;
 use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing, hash_of};
 use crate::slot::{IMAGE, Slot};
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::{Pipelines, VulkanError};
 
 /// The means of a picture's samples.
 pub(crate) struct Means {
@@ -45,7 +45,7 @@ impl Estimates {
     pub(super) fn update(
         held: Option<Estimates>,
         entry: &EstimatorEntry,
-        device: &Arc<Device>,
+        pipelines: &Arc<Pipelines>,
         scene: Arc<TracedScene>,
     ) -> Result<Estimates, VulkanError> {
         let held = held.filter(|held| held.name == entry.name);
@@ -53,7 +53,7 @@ impl Estimates {
             let [piece, pass] = entry.first_pass.map(str::to_owned);
             let skipped = Some("unchanged: geometry, materials, lights, camera".to_owned());
             let unchanged = PassTiming { piece, pass, ms: None, skipped, work: BTreeMap::new() };
-            let (running, memory_bytes) = ((entry.open)(device)?, BTreeMap::new());
+            let (running, memory_bytes) = ((entry.open)(pipelines)?, BTreeMap::new());
             Ok(Estimates { name: entry.name, running, held: None, unchanged, memory_bytes })
         };
         let mut estimates = held.map_or_else(made, Ok)?;

@@ -9,13 +9,13 @@ use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, for_all_methods};
 use crate::scene::Facts;
 use crate::slot::{LightPaths, PixelFilter, Slot};
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::{Pipelines, VulkanError};
 
 /// Declares a method's passes with its options out of all settings.
 type Declare = fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>;
 
 /// Makes an estimator on a device.
-type Open = fn(&Arc<Device>) -> Result<Box<dyn Estimating>, VulkanError>;
+type Open = fn(&Arc<Pipelines>) -> Result<Box<dyn Estimating>, VulkanError>;
 
 /// A method, with its options taken from all settings.
 pub(crate) struct MethodEntry {
@@ -67,7 +67,7 @@ macro_rules! estimator_entries {
             light_paths: |settings| <crate::estimator::$estimator::$type as Estimator>::light_paths(&settings.$estimator),
             filter: |settings| <crate::estimator::$estimator::$type as Estimator>::filter(&settings.$estimator),
             samples: |settings| <crate::estimator::$estimator::$type as Estimator>::samples(&settings.$estimator),
-            open: |device| <crate::estimator::$estimator::$type as Estimator>::open(device),
+            open: |pipelines| <crate::estimator::$estimator::$type as Estimator>::open(pipelines),
         }),*]
     };
 }

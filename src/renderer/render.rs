@@ -18,7 +18,7 @@ use crate::image::ColorImage;
 use crate::method::{Error, Rays};
 use crate::scene::Scene;
 use crate::slot::Slot;
-use crate::vulkan::{Device, VulkanError};
+use crate::vulkan::VulkanError;
 
 /// Makes frames with one set of settings on one device.
 ///
@@ -41,7 +41,7 @@ impl Renderer {
     /// # Errors
     /// If an option is out of range, or the device has no memory left.
     pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
-        let store = Store::new(context.shared_device())?;
+        let store = Store::new(context.pipelines())?;
         let held = (None, LightSet::default(), None, None);
         let (data, lights, traced, estimates) = held;
         check(&settings)?;
@@ -97,10 +97,6 @@ impl Renderer {
         }
     }
 
-    fn device(&self) -> &Arc<Device> {
-        self.store.device()
-    }
-
     /// The estimator that fills some wanted slot.
     fn estimator(&self, request: &FrameRequest) -> Option<&'static EstimatorEntry> {
         let estimated = |slot: &Slot| matches!(self.settings.methods.filler(*slot), Some(Filler::Estimator(_)));
@@ -110,8 +106,8 @@ impl Renderer {
 
     /// The estimator at work on the scene as it is now.
     fn estimates(&mut self, entry: &EstimatorEntry, scene: &Scene) -> Result<&mut Estimates, Error> {
-        let (device, traced) = (self.device().clone(), self.traced_scene(scene)?);
-        let estimates = Estimates::update(self.estimates.take(), entry, &device, traced)?;
+        let (pipelines, traced) = (self.store.pipelines().clone(), self.traced_scene(scene)?);
+        let estimates = Estimates::update(self.estimates.take(), entry, &pipelines, traced)?;
         Ok(self.estimates.insert(estimates))
     }
 

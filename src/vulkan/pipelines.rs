@@ -99,7 +99,7 @@ struct Layouts {
     pipeline: vk::PipelineLayout,
 }
 
-/// All pipelines of a device.
+/// All pipelines of a device. They outlast what uses them: what one renderer had compiled, the next one finds.
 pub(crate) struct Pipelines {
     device: Arc<Device>,
     layouts: Mutex<HashMap<&'static str, Layouts>>,
@@ -109,14 +109,18 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    pub(crate) fn new(device: &Arc<Device>) -> Pipelines {
-        Pipelines {
+    pub(crate) fn new(device: &Arc<Device>) -> Arc<Pipelines> {
+        Arc::new(Pipelines {
             device: device.clone(),
             layouts: Mutex::default(),
             pipelines: Mutex::default(),
             samplers: Mutex::default(),
             spent: Mutex::default(),
-        }
+        })
+    }
+
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        &self.device
     }
 
     /// Time spent creating pipelines since this was last asked.
