@@ -6,8 +6,8 @@ use ash::vk;
 
 use super::gbuffer::GBuffer;
 use crate::graph::bindings::{ImageRef, SampledImage};
-use crate::graph::{Dependence, Graph};
-use crate::shaders::compose::{Estimate, Image, ImagePush};
+use crate::graph::{Dependence, Graph, hash_of};
+use crate::shaders::compose::{Estimate, EstimatePush, Image, ImagePush};
 use crate::slot::Slot;
 
 /// Declares the pass that adds up the slots that there are; a slot that no method fills is `None`.
@@ -36,12 +36,30 @@ pub(crate) fn compose(
     image
 }
 
-/// Declares the pass that takes a slot from an estimator's means, three floats a pixel, whose content `key` names.
-pub(crate) fn estimated(graph: &mut Graph<'_>, slot: Slot, size: [u32; 2], means: &Arc<[u8]>, key: u64) -> ImageRef {
+/// Bytes of means that one pass takes: what every device lets a kernel see of one buffer.
+pub(crate) const MEANS_AT_ONCE: usize = 1 << 27;
+
+/// Declares the passes that take a slot from an estimator's means, three floats a pixel, row by row, whose content `key` names. A pass takes as many
+/// rows as `bytes_at_once` hold.
+pub(crate) fn estimated(
+    graph: &mut Graph<'_>,
+    slot: Slot,
+    size: [u32; 2],
+    (means, key): (&Arc<[u8]>, u64),
+    bytes_at_once: usize,
+) -> ImageRef {
     let all = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS | Dependence::CAMERA;
-    let means = graph.upload_shared::<f32>(&format!("estimate.{slot}.means"), means.clone(), key, all);
     let image = graph.image(&format!("estimate.{slot}"), vk::Format::R32G32B32A32_SFLOAT, size);
-    let pass = Estimate { means: means.read(), slot: image.write() };
-    graph.pass(&format!("compose/estimate-{slot}"), pass).pixels(size);
+    let row_bytes = 3 * size_of::<f32>() * size[0] as usize;
+    let rows_at_once = (bytes_at_once / row_bytes).max(1);
+    for (part, rows) in means.chunks(rows_at_once * row_bytes).enumerate() {
+        let whole = rows.len() == means.len();
+        let name = if part == 0 { format!("{slot}") } else { format!("{slot}-{}", part + 1) };
+        let shared = if whole { means.clone() } else { rows.into() };
+        let held = graph.upload_shared::<f32>(&format!("estimate.{name}.means"), shared, hash_of(&(key, part)), all);
+        let push = EstimatePush { first_row: (part * rows_at_once) as u32, row_count: (rows.len() / row_bytes) as u32 };
+        let pass = Estimate { means: held.read(), slot: if whole { image.write() } else { image.modify() }, push };
+        graph.pass(&format!("compose/estimate-{name}"), pass).pixels([size[0], push.row_count]);
+    }
     image
 }

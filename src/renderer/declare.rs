@@ -5,7 +5,7 @@ use super::frame::FrameRequest;
 use super::methods::{Filler, MethodEntry};
 use super::settings::Settings;
 use crate::frame::camera::camera;
-use crate::frame::compose::{compose, estimated};
+use crate::frame::compose::{MEANS_AT_ONCE, compose, estimated};
 use crate::frame::gbuffer::{GBuffer, View, gbuffer};
 use crate::frame::geometry::Geometry;
 use crate::frame::inputs::FrameInputs;
@@ -158,7 +158,7 @@ pub(crate) fn declare(
     for (&slot, pixels) in means.into_iter().flat_map(|means| &means.slots) {
         let fills = request.wants(slot) && matches!(settings.methods.filler(slot), Some(Filler::Estimator(_)));
         if let (true, Some(means)) = (fills, means) {
-            slots.push((slot, estimated(graph, slot, request.size, pixels, means.key)));
+            slots.push((slot, estimated(graph, slot, request.size, (pixels, means.key), MEANS_AT_ONCE)));
         }
     }
     let mut declared = Declared { slots, image: None, display: None };
