@@ -10,6 +10,7 @@ macro_rules! for_all_methods {
                 traced => Traced(TracedOptions),
             }
             diffuse {
+                ambient => Ambient(AmbientOptions),
                 rsm => Rsm(RsmOptions),
                 vpl => Vpl(VplOptions),
             }
