@@ -5,11 +5,13 @@
 layout(location = 0) in vec3 position;
 layout(location = 5) in vec4 color;
 
-layout(location = 1) out float vertex_alpha;
+layout(location = 1) out vec4 vertex_color;
 layout(location = 2) flat out uint instance_index;
+layout(location = 5) flat out vec4 corner_color;
 
 void write_masked_vertex() {
-    vertex_alpha = color_of_vertex(load_instance(instances, gl_InstanceIndex), color).a;
+    vertex_color = color;
+    corner_color = color;
     instance_index = gl_InstanceIndex;
     write_texcoords();
 }

@@ -23,14 +23,16 @@ bool has_texture(Material material, uint kind) {
 
 // Texture coordinates of a fragment, set 0 in xy, set 1 in zw, and their screen-space derivatives. These are taken from the
 // interpolated vertex outputs, in uniform control flow: behind a load that depends on the material a helper invocation at a
-// triangle's edge may see zeros (it does on lavapipe), and the fragment would sample the coarsest mip level.
+// triangle's edge may see zeros (it does on lavapipe), and the fragment would sample the coarsest mip level. Coordinates that are no
+// numbers (geometry/interpolated.glsl) become those of one corner.
 struct Texcoords {
     vec4 sets;
     vec4 dx;
     vec4 dy;
 };
 
-Texcoords texcoords_of_fragment(vec4 sets) {
+Texcoords texcoords_of_fragment(vec4 interpolated, vec4 at_corner) {
+    vec4 sets = is_finite(interpolated) ? interpolated : at_corner;
     return Texcoords(sets, dFdx(sets), dFdy(sets));
 }
 

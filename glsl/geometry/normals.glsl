@@ -2,6 +2,7 @@
 #ifndef GEOMETRY_NORMALS
 #define GEOMETRY_NORMALS
 
+#include "geometry/interpolated.glsl"
 #include "groups/geometry.glsl"
 #include "lib/vectors.glsl"
 
@@ -31,7 +32,7 @@ struct Normals {
 Normals fragment_normals(Instance instance, vec3 vertex_normal, uint primitive, bool front_facing) {
     vec3 face = face_normal(instance, primitive);
     bool flat_normals = (instance.flags & INSTANCE_FLAT_NORMALS) != 0u;
-    vec3 interpolated = flat_normals ? face : transform_normal(instance, vertex_normal);
+    vec3 interpolated = flat_normals ? face : transform_normal(instance, normal_of_fragment(vertex_normal, vec3(0.0)));
     float viewer_side = front_facing ? 1.0 : -1.0;
     float outside = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
     vec3 geometric = viewer_side * normalize_or(face, vec3(0.0, 0.0, 1.0));

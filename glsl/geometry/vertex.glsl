@@ -8,9 +8,11 @@ layout(location = 5) in vec4 color;
 layout(location = 0) out vec3 vertex_normal;
 layout(location = 1) out vec4 vertex_color;
 layout(location = 2) flat out uint instance_index;
+layout(location = 5) flat out vec4 corner_color;
 
 void write_vertex() {
     vertex_normal = normal;
-    vertex_color = color_of_vertex(load_instance(instances, gl_InstanceIndex), color);
+    vertex_color = color;
+    corner_color = color;
     instance_index = gl_InstanceIndex;
 }

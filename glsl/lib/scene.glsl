@@ -69,10 +69,6 @@ vec3 transform_normal(Instance instance, vec3 normal) {
     return normal.x * instance.cofactor_x + normal.y * instance.cofactor_y + normal.z * instance.cofactor_z;
 }
 
-vec4 color_of_vertex(Instance instance, vec4 color) {
-    return (instance.flags & INSTANCE_HAS_COLORS) != 0u ? color : vec4(1.0);
-}
-
 vec3 transform_direction(Instance instance, vec3 direction) {
     return vec4(direction, 0.0) * instance.object_to_render;
 }

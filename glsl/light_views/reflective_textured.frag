@@ -15,12 +15,14 @@ layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
 layout(location = 2) flat in uint instance_index;
 layout(location = 4) in vec4 texcoord_sets;
+layout(location = 5) flat in vec4 corner_color;
+layout(location = 6) flat in vec4 corner_texcoords;
 
 void main() {
-    Texcoords texcoords = texcoords_of_fragment(texcoord_sets);
+    Texcoords texcoords = texcoords_of_fragment(texcoord_sets, corner_texcoords);
     Instance instance = load_instance(instances, instance_index);
     Material material = load_material(drawn_materials, instance.material);
-    MaterialPoint point = material_factors(material, vertex_color);
+    MaterialPoint point = material_factors(material, color_of_fragment(instance, vertex_color, corner_color));
     apply_base_color_texture(point, material, instance.material, texcoords);
     if (ALPHA_MASK != 0u && point.base_color.a < material.alpha_cutoff) {
         discard;

@@ -10,7 +10,7 @@ layout(location = 0) in float depth;
 void main() {
     Instance instance = load_instance(instances, instance_index);
     vec3 normal = front_normal(instance, gl_PrimitiveID);
-    bool there = is_there(instance.material);
+    bool there = is_there(instance);
     if (!there || !is_next(depth) || !is_kept(normal)) {
         discard;
     }

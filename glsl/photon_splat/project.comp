@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/splat.glsl"
 #include "groups/surface.glsl"
+#include "lib/finite.glsl"
 #include "photons/records.glsl"
 #include "photon_splat/disc.glsl"
 #include "photon_splat/extent.glsl"
@@ -80,13 +81,18 @@ float lattice_sum(Photon photon, float radius, float smaller, vec3 squeeze, Exte
             vec3 from_center = start + ray * z - offset;
             float squeezed = dot(from_center, squeeze);
             float squared = dot(from_center, from_center) * inverse_radius * inverse_radius + squeezed * squeezed;
-            sum += area > 0.0 ? kernel_shape(squared) * area : 0.0;
+            // A ray along the plane does not meet it.
+            sum += area > 0.0 && is_finite(squared) ? kernel_shape(squared) * area : 0.0;
         }
     }
     return sum * area_factor * length(x_step) * length(y_step) * kernel_peak() * inverse_radius / smaller;
 }
 
-// Comparisons with what is no number are false.
+bool is_number(Photon photon) {
+    return is_finite(photon.position_rs) && is_finite(photon.radius) && is_finite(photon.flux);
+}
+
+// Whether it stays a number where it is squared and summed.
 bool is_sound(Photon photon) {
     return all(lessThan(abs(photon.position_rs), vec3(1e15))) && photon.radius < 1e15
         && all(greaterThanEqual(photon.flux, vec3(0.0))) && all(lessThan(photon.flux, vec3(1e30)));
@@ -125,7 +131,11 @@ void main() {
         irradiance = min(irradiance, vec3(1e30));
         float peak = max3(irradiance);
         uvec2 place = uvec2(NO_CELL, 0u);
-        if (is_sound(photon) && peak > 0.0 && extent.radius.x > 0.0) {
+        bool is_dropped = !is_number(photon);
+        if (is_dropped) {
+            atomicAdd(state[STATE_DROPPED], 1u);
+        }
+        if (!is_dropped && is_sound(photon) && peak > 0.0 && extent.radius.x > 0.0) {
             float reach = max(extent.radius.x, extent.radius.y);
             int level = 0;
             while (level < push.level_count - 1 && reach > reach_of_level(level)) {

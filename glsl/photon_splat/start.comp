@@ -24,7 +24,7 @@ void main() {
     state[STATE_BLOCKS] = any_photon ? push.blocks.x : 0u;
     state[STATE_BLOCKS + 1u] = push.blocks.y;
     state[STATE_BLOCKS + 2u] = 1u;
-    for (uint word = STATE_TILES; word <= STATE_LEVELS; ++word) {
+    for (uint word = STATE_TILES; word <= STATE_DROPPED; ++word) {
         state[word] = 0u;
     }
     state[STATE_TILES + 2u] = 1u;

@@ -12,6 +12,7 @@ const uint STATE_TILES = 6u;    // the list of ordinary tiles (4)
 const uint STATE_CROWDED = 10u; // the list of crowded tiles (4)
 const uint STATE_PARTS = 14u;   // arguments of a dispatch over the crowded tiles and their parts: rows of the list along z (3)
 const uint STATE_LEVELS = 17u;  // bit l: cells of level l hold photons
+const uint STATE_DROPPED = 18u; // photons left out since something of them is no number
 
 // A dispatch may have 65535 groups along an axis at most.
 const uint LISTED_A_ROW = 32768u;

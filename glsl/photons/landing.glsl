@@ -81,9 +81,9 @@ Ellipse footprint(Landing landing) {
     float share = lobe_in_disc(unpackHalf2x16(landing.photon.bits >> 16).x);
     float drawn = landing.spread * (1.0 - share) * inversesqrt(emitted);
     Ellipse ellipse = ellipse_of(landing.beam, landing.normal, push.disc_scale, landing.spread * share, drawn);
-    // Comparisons with what is no number are false.
-    ellipse.larger = ellipse.larger < most ? max(ellipse.larger, least) : most;
-    ellipse.smaller.w = ellipse.smaller.w < ellipse.larger ? max(ellipse.smaller.w, ellipse.larger / 32.0) : ellipse.larger;
+    ellipse.larger = is_finite(ellipse.larger) ? clamp(ellipse.larger, least, most) : most;
+    ellipse.smaller.xyz = is_finite(ellipse.smaller.xyz) ? ellipse.smaller.xyz : vec3(0.0);
+    ellipse.smaller.w = is_finite(ellipse.smaller.w) ? clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger) : ellipse.larger;
     return ellipse;
 }
 

@@ -23,9 +23,14 @@ layout(push_constant, scalar) uniform Push {
 
 #include "photons/pyramid.glsl"
 
+// What is no number is counted.
 float flux_of_block(Level level, ivec2 block) {
     if (push.level == 0u) {
-        return imageLoad(mask, block).x;
+        float flux = imageLoad(mask, block).x;
+        if (!is_finite(flux)) {
+            atomicAdd(pyramid[PYRAMID_DROPPED], 1u);
+        }
+        return sound_flux(flux);
     }
     return holds(level, block) ? uintBitsToFloat(pyramid[place_of_block(level, block)]) : 0.0;
 }

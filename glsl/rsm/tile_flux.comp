@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 1) writeonly buffer TileFluxes { vec4 tile_fluxes[]; };
+layout(set = 0, binding = 2) buffer DroppedBlock { uint dropped_texels[]; };
 
 layout(push_constant, scalar) uniform Push { uint tile_count; } push;
 
@@ -19,7 +20,11 @@ void main() {
         LightView view = load_view(views, tiles[tile].view);
         vec4 sum = vec4(0.0);
         [[dont_unroll]] for (uint index = self; index < TILE_TEXELS; index += 64u) {
-            sum += flux_and_area(view, tiles[tile].origin + ivec2(index & 15u, index >> 4));
+            bool dropped = false;
+            sum += flux_and_area(view, tiles[tile].origin + ivec2(index & 15u, index >> 4), dropped);
+            if (dropped) {
+                atomicAdd(dropped_texels[0], 1u);
+            }
         }
         partial[self] = sum;
         barrier();

@@ -63,7 +63,8 @@ Quantile find_quantile(float target) {
     bool reached = false;
     [[dont_unroll]] for (uint index = 0u; index < TILE_TEXELS && !reached; ++index) {
         ivec2 texel = texel_of_tile(tile, index);
-        vec4 of_texel = flux_and_area(view, texel);
+        bool dropped = false;
+        vec4 of_texel = flux_and_area(view, texel, dropped);
         float weight = luminance(of_texel.rgb);
         if (weight > 0.0) {
             float share = clamp(remaining / weight, 0.0, 1.0);

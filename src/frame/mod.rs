@@ -4,7 +4,9 @@
 //! middle of the scene, so that a scene far from the world's origin loses no precision in 32-bit floats.
 
 pub(crate) mod camera;
+pub(crate) mod check;
 pub(crate) mod compose;
+mod drawn_triangles;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;
 pub(crate) mod inputs;

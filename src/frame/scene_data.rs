@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::drawn_triangles::drawn_indices;
 use super::textures::{MaterialTextureSets, TextureArrays, slots_of};
 use crate::graph::hash_of;
 use crate::scene::{Alpha, Bounds, Instance, Material, Primitive, Scene, has_specular_lobe};
@@ -165,11 +166,14 @@ impl MeshData {
     fn upload(device: &Arc<Device>, scene: &Scene) -> Result<MeshData, VulkanError> {
         let primitives: Vec<&Primitive> = scene.meshes().iter().flat_map(|mesh| &mesh.primitives).collect();
         let vertices: usize = primitives.iter().map(|primitive| primitive.positions.len()).sum();
+        let mut indices: Vec<u32> = Vec::new();
         let mut places = Vec::new();
         let (mut first_index, mut vertex_offset) = (0_u32, 0_i32);
         for mesh in scene.meshes() {
-            let place = |primitive: &Primitive| {
-                let index_count = narrow(primitive.indices.len())?;
+            let mut place = |primitive: &Primitive| {
+                let drawn = drawn_indices(primitive);
+                let index_count = narrow(drawn.len())?;
+                indices.extend(drawn);
                 let bounds = box_of(&primitive.positions);
                 let area = area_of(primitive, DMat3::IDENTITY);
                 let place = Place { first_index, index_count, vertex_offset, bounds, area };
@@ -180,9 +184,8 @@ impl MeshData {
                     .ok_or_else(too_many)?;
                 Ok(place)
             };
-            places.push(mesh.primitives.iter().map(place).collect::<Result<Vec<_>, VulkanError>>()?);
+            places.push(mesh.primitives.iter().map(&mut place).collect::<Result<Vec<_>, VulkanError>>()?);
         }
-        let indices: Vec<u32> = primitives.iter().flat_map(|primitive| primitive.indices.iter().copied()).collect();
         let positions: Vec<[f32; 3]> =
             primitives.iter().flat_map(|primitive| primitive.positions.iter().copied()).collect();
         let texel = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;

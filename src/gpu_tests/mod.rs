@@ -21,6 +21,7 @@ mod leaks;
 mod light_share;
 mod lists;
 mod memory;
+mod numbers;
 mod path_caustics;
 mod path_closed_forms;
 mod path_lobes;

@@ -32,6 +32,11 @@ impl ImageRef {
         self.info
     }
 
+    /// Width and height of the first of its mip levels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        [0, 1].map(|axis| (self.info.extent[axis] >> self.mips.0).max(1))
+    }
+
     /// Only mip level `level`.
     pub(crate) fn mip(self, level: u32) -> ImageRef {
         ImageRef { mips: (level, level + 1), ..self }

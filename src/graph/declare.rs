@@ -25,7 +25,18 @@ pub(crate) struct Graph<'s> {
     /// Images with their mip level; buffers with 0.
     pub(super) read_backs: Vec<(usize, u32)>,
     pub(super) growing: Vec<Growing>,
+    pub(super) watcher: Option<Watcher>,
 }
+
+/// What a pass wrote.
+pub(crate) enum Output {
+    /// One mip level of an image.
+    Image(ImageRef),
+    Buffer(BufferRef<u32>),
+}
+
+/// Declares passes that look at the outputs of the one that was just declared, whose name it gets.
+pub(crate) type Watcher = Box<dyn FnMut(&mut Graph<'_>, &str, &[(String, Output)])>;
 
 /// A buffer whose size only the device finds out.
 pub(super) struct Growing {
@@ -46,6 +57,7 @@ impl<'s> Graph<'s> {
             wanted: Vec::new(),
             read_backs: Vec::new(),
             growing: Vec::new(),
+            watcher: None,
         }
     }
 
@@ -80,6 +92,11 @@ impl<'s> Graph<'s> {
         let held: Vec<u64> = (0..info.mips).map(|mip| self.store.image_key(name, &info, mip).unwrap_or(0)).collect();
         let id = self.add(name, Body::Image(info), info.mips, |mip| (held[mip as usize], Dependence::NONE));
         ImageRef { id, mips: (0, info.mips), info }
+    }
+
+    /// The name that an image was declared by.
+    pub(crate) fn name_of(&self, image: ImageRef) -> &str {
+        &self.resources[image.id].name
     }
 
     /// A buffer of `count` elements. What it held in the last frame stands until a pass writes it.
@@ -266,6 +283,7 @@ impl<'s> Graph<'s> {
             }
         }
         self.passes.push(pass);
+        self.tell_watcher(&accesses);
     }
 
     fn note_usage(&mut self, access: &Access, piece: &str) {
@@ -299,7 +317,7 @@ impl<'s> Graph<'s> {
 }
 
 /// The places that an access touches, and whether it reads and writes what they hold.
-fn places(access: &Access) -> Vec<(Place, bool, bool)> {
+pub(super) fn places(access: &Access) -> Vec<(Place, bool, bool)> {
     match access {
         Access::Image { image, mips, usage } => {
             let (reads, writes) = match usage {

@@ -33,8 +33,9 @@ mod report;
 mod resource;
 mod store;
 mod timing;
+mod watch;
 
-pub(crate) use declare::Graph;
+pub(crate) use declare::{Graph, Output};
 pub(crate) use dependence::Dependence;
 pub use describe::GraphDescription;
 pub(crate) use execute::{Executed, Outgrown};

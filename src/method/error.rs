@@ -15,6 +15,19 @@ pub enum Error {
     /// An option is out of its range.
     #[error("{0}")]
     Settings(String),
+    /// A frame shows what no light can be. That is a fault of the program or the driver, not of the scene.
+    #[error(
+        "{pixels} pixels of {what} are not finite or are negative; {}: report the scene and the settings, and do without that piece",
+        pass.as_ref().map_or_else(|| "no pass is known that wrote such values first".to_owned(), |pass| format!("the first pass that wrote such values is {pass}"))
+    )]
+    NotFinite {
+        /// `image`, or the slot.
+        what: String,
+        /// How many pixels.
+        pixels: u32,
+        /// The first pass that wrote such values, when the frame was made again with a check after each.
+        pass: Option<String>,
+    },
     /// Photons of references do not know which lobes scattered them.
     #[error("the estimator sppm shows caustics of all paths; those of specular paths alone take the estimator path")]
     SppmCaustics,

@@ -35,6 +35,14 @@ impl Declared {
     }
 }
 
+impl Declared {
+    /// What the host gets to see: the slots asked for, and the image.
+    pub(crate) fn shown(&self, request: &FrameRequest) -> Vec<(String, ImageRef)> {
+        let slots = request.slots.iter().filter_map(|&slot| Some((slot.to_string(), self.slot(slot)?)));
+        slots.chain(self.image.filter(|_| request.image).map(|image| ("image".to_owned(), image))).collect()
+    }
+}
+
 /// A scene as it is on the device.
 pub(crate) struct Prepared<'a> {
     pub(crate) scene: &'a Scene,

@@ -22,6 +22,7 @@ mod choices;
 mod context;
 pub(crate) mod declare;
 mod estimates;
+mod fault;
 mod frame;
 mod methods;
 mod render;

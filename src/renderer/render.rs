@@ -10,6 +10,7 @@ use super::estimates::{Estimates, Means};
 use super::frame::{Frame, FrameRequest};
 use super::methods::{EstimatorEntry, Filler};
 use super::settings::Settings;
+use crate::frame::check::check_images;
 use crate::frame::light_set::LightSet;
 use crate::frame::rays::{TracedScene, surfaces_key, traced_key};
 use crate::frame::scene_data::SceneData;
@@ -29,7 +30,7 @@ pub struct Renderer {
     pub(super) data: Option<SceneData>,
     pub(super) lights: LightSet,
     /// Held while something sends rays.
-    traced: Option<Arc<TracedScene>>,
+    pub(super) traced: Option<Arc<TracedScene>>,
     pub(super) store: Store,
     /// Held once an estimator fills a slot.
     estimates: Option<Estimates>,
@@ -84,8 +85,11 @@ impl Renderer {
         let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
         let means = self.estimate(scene, request, &mut timings)?;
         loop {
-            let (mut frame, outgrown) = self.draw_once(scene, request, means.as_deref())?;
+            let Drawn { mut frame, outgrown, fault } = self.draw_once(scene, request, means.as_deref())?;
             if outgrown.is_empty() {
+                if let Some(fault) = fault {
+                    return Err(self.explain(scene, request, means.as_deref(), fault));
+                }
                 timings.add(std::mem::take(&mut frame.timings));
                 timings.host_ms = start.elapsed().as_secs_f64() * 1e3;
                 (frame.timings, frame.estimate) = (timings, means.map(|means| means.estimate.clone()));
@@ -133,7 +137,7 @@ impl Renderer {
         scene: &Scene,
         request: &FrameRequest,
         means: Option<&Means>,
-    ) -> Result<(Frame, Vec<Outgrown>), Error> {
+    ) -> Result<Drawn, Error> {
         let start = Instant::now();
         let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -144,7 +148,10 @@ impl Renderer {
 
         let mut slots = Vec::new();
         let mut image = None;
+        let mut check = None;
         if request.read_back {
+            let shown = declared.shown(request);
+            check = Some((check_images(&mut graph, &shown), shown));
             slots = request
                 .slots
                 .iter()
@@ -159,6 +166,10 @@ impl Renderer {
 
         let mut executed = graph.run(request.timing)?;
         let size = request.size;
+        let fault = check.and_then(|(faults, shown)| {
+            let (index, pixels) = faults.first(|read_back| executed.take(read_back))?;
+            Some(Fault { what: shown[index].0.clone(), pixels })
+        });
         let mut taken = |read_back| color_image(size, &executed.take(read_back));
         let image = image.map(&mut taken);
         let slots: BTreeMap<Slot, ColorImage> = slots
@@ -180,7 +191,8 @@ impl Renderer {
             passes: executed.passes,
             memory_bytes,
         };
-        Ok((Frame { size, image, slots, display, estimate: None, timings }, std::mem::take(&mut executed.outgrown)))
+        let frame = Frame { size, image, slots, display, estimate: None, timings };
+        Ok(Drawn { frame, outgrown: std::mem::take(&mut executed.outgrown), fault })
     }
 
     /// The passes of the frame that `request` asks for, and which of them would be skipped and why. Nothing runs.
@@ -258,6 +270,20 @@ impl Renderer {
             estimates.release_scene();
         }
     }
+}
+
+/// A frame that was made, if nothing is wrong with it.
+struct Drawn {
+    frame: Frame,
+    outgrown: Vec<Outgrown>,
+    fault: Option<Fault>,
+}
+
+/// Pixels that are no numbers or negative.
+pub(super) struct Fault {
+    /// `image`, or the slot.
+    pub(super) what: String,
+    pub(super) pixels: u32,
 }
 
 /// The frame's images stay on the device.

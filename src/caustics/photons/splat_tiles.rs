@@ -11,7 +11,8 @@ use crate::shaders::groups;
 use crate::shaders::photon_splat::{Project, ProjectPush, Start, StartPush, Touch, TouchPush};
 
 /// Words of `photons.splat_state` (glsl/photon_splat/state.glsl).
-pub(super) const STATE_WORDS: usize = 18;
+pub(super) const STATE_WORDS: usize = 19;
+const STATE_DROPPED: usize = 18;
 pub(super) const ROWS_WORD: usize = 0;
 const BLOCKS_WORD: usize = 3;
 pub(super) const PARTS_WORD: usize = 14;
@@ -106,6 +107,7 @@ impl Splat<'_> {
         graph
             .pass("caustics/photons/splat/project", pass)
             .count("photons", self.landed.counts, first + COUNT_WORD)
+            .count("dropped", self.state, STATE_DROPPED)
             .threads_indirect(self.landed.counts, first + DISPATCH_WORD);
 
         let pass = Touch {

@@ -72,17 +72,20 @@ pub(crate) fn rsm(cx: &mut FrameCx<'_, '_>, options: &RsmOptions) -> Made {
     let vpls = graph.buffer::<[f32; 4]>("rsm.vpls", 2 * vpl_count as usize);
     let diffuse = graph.image("diffuse", vk::Format::R32G32B32A32_SFLOAT, buffer.size);
 
+    let dropped = graph.buffer::<u32>("rsm.dropped", 1);
+    graph.fill_buffer("diffuse/rsm/clear-dropped", dropped, 0);
     let pass = TileFlux {
         tiles: tiles.read(),
         light_views: lights.group.clone(),
         tile_fluxes: tile_fluxes.write(),
+        dropped_texels: dropped.read_write(),
         push: TileFluxPush { tile_count },
     };
-    graph.pass("diffuse/rsm/tile-flux", pass).note("tiles", u64::from(tile_count)).groups([
-        tile_count.min(MOST_TILE_GROUPS),
-        1,
-        1,
-    ]);
+    graph
+        .pass("diffuse/rsm/tile-flux", pass)
+        .note("tiles", u64::from(tile_count))
+        .count("dropped", dropped, 0)
+        .groups([tile_count.min(MOST_TILE_GROUPS), 1, 1]);
 
     let pass =
         Scan { tile_fluxes: tile_fluxes.read(), flux_prefix: flux_prefix.write(), push: ScanPush { tile_count } };

@@ -27,17 +27,20 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
     let shares = graph.buffer::<ViewShare>("vpl.shares", view_count as usize);
     let vpls = graph.buffer::<[f32; 4]>("vpl.vpls", 2 * vpl_count as usize);
 
+    let dropped = graph.buffer::<u32>("vpl.dropped", 1);
+    graph.fill_buffer("diffuse/vpl/vpls/clear-dropped", dropped, 0);
     let pass = BlockFlux {
         tiles: tiles.read(),
         light_views: lights.group.clone(),
         blocks: blocks.write(),
+        dropped_texels: dropped.read_write(),
         push: BlockFluxPush { tile_count },
     };
-    graph.pass("diffuse/vpl/vpls/block-flux", pass).note("tiles", u64::from(tile_count)).threads([
-        tile_count * BLOCKS_PER_TILE,
-        1,
-        1,
-    ]);
+    graph
+        .pass("diffuse/vpl/vpls/block-flux", pass)
+        .note("tiles", u64::from(tile_count))
+        .count("dropped", dropped, 0)
+        .threads([tile_count * BLOCKS_PER_TILE, 1, 1]);
 
     let pass = BlockSums {
         light_views: lights.group.clone(),
