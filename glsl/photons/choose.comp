@@ -4,8 +4,8 @@
 #include "photons/records.glsl"
 
 // Chooses how finely light is cut into photons (Quyen 2014, section 3.3.1.1): the finest level of the mask's pyramid on which no more blocks
-// than there may be photons are not empty, and to each of these as many photons as all may have alike. So more than half of what is allowed is
-// used, where the paper's whole levels use a quarter. Empties the counts of all stages.
+// than there may be photons are not empty, and all photons that there may be shared evenly among these (photons/shares.glsl). The paper sends
+// one photon a block, which uses a quarter of what is allowed at worst. Empties the counts of all stages.
 
 layout(local_size_x = 1) in;
 
@@ -29,20 +29,19 @@ void main() {
         ++level;
     }
     uint blocks = min(pyramid[level], push.most);
-    uint of_block = blocks > 0u ? push.most / blocks : 0u;
-    uint photons = blocks * of_block;
+    uint photons = blocks > 0u ? push.most : 0u;
     Level chosen = load_level(level);
     uint groups = (photons + 63u) / 64u;
     choice[0] = uint(chosen.size.x + 31) / 32u;
     choice[1] = photons > 0u ? uint(chosen.size.y + 31) / 32u : 0u;
     choice[2] = 1u;
     choice[CHOICE_LEVEL] = level;
-    choice[CHOICE_OF_BLOCK] = of_block;
+    choice[CHOICE_OF_BLOCK] = blocks > 0u ? push.most / blocks : 0u;
     choice[CHOICE_PHOTONS] = photons;
     choice[CHOICE_EMIT] = groups;
     choice[CHOICE_EMIT + 1u] = 1u;
     choice[CHOICE_EMIT + 2u] = 1u;
-    choice[CHOICE_LISTED] = 0u;
+    choice[CHOICE_BLOCKS] = blocks;
     [[dont_unroll]] for (uint stage = 0u; stage < push.stage_count; ++stage) {
         const uint[STAGE_WORDS] empty = uint[STAGE_WORDS](0u, 1u, 1u, 0u, 6u, 0u, 0u, 0u);
         [[dont_unroll]] for (uint word = 0u; word < STAGE_WORDS; ++word) {

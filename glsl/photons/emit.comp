@@ -9,6 +9,7 @@
 #include "photons/choice.glsl"
 #include "photons/medium.glsl"
 #include "photons/random.glsl"
+#include "photons/shares.glsl"
 #include "photons/surface_texel.glsl"
 
 // One invocation makes one photon where light first meets a specular surface. It stands for the flux W that its block of the mask's
@@ -19,7 +20,7 @@
 //
 // so that the photons' flux adds up to what all specular surfaces receive, silhouettes included: the paper's rule, that all four texels
 // below must be specular (Quyen 2014, section 3.3.1.1), loses them. Of m photons to a block each draws from its m-th of the flux, and if the
-// block is a texel, has its place in it.
+// block is a texel, has its place in it. Where photons are no multiple of the blocks, some have m + 1 (photons/shares.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -48,7 +49,7 @@ float flux_of_block(uint number, ivec2 block) {
     if (!holds(level, block)) {
         return 0.0;
     }
-    return number == 0u ? texelFetch(mask, block, 0).x : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x);
+    return number == 0u ? sound_flux(texelFetch(mask, block, 0).x) : uintBitsToFloat(texelFetch(pyramid, int(place_of_block(level, block))).x);
 }
 
 // From the middle of a texel, in texels: point `turn` of `count` of Hammersley's set.
@@ -129,15 +130,21 @@ bool is_outline(LightView view, ivec2 texel, ivec2 step) {
 
 void main() {
     uint photon = gl_GlobalInvocationID.x;
-    if (photon >= texelFetch(choice, int(CHOICE_PHOTONS)).x) {
+    uint photons = texelFetch(choice, int(CHOICE_PHOTONS)).x;
+    if (photon >= photons) {
         return;
     }
     uint level = texelFetch(choice, int(CHOICE_LEVEL)).x;
-    uint of_block = texelFetch(choice, int(CHOICE_OF_BLOCK)).x;
-    uint packed_block = texelFetch(blocks, int(photon / of_block)).x;
+    uint block_count = texelFetch(choice, int(CHOICE_BLOCKS)).x;
+    uint rank = block_of_photon(photon, photons, block_count);
+    uint first = first_photon_of(rank, photons, block_count);
+    uint of_block = first_photon_of(rank + 1u, photons, block_count) - first;
+    uint packed_block = texelFetch(blocks, int(rank)).x;
     uvec2 block = uvec2(packed_block & 0xFFFFu, packed_block >> 16);
-    uint turn = photon % of_block;
-    uint number = morton_code(block) * of_block + turn;
+    uint turn = photon - first;
+    // The one that some blocks have more has a sequence of its own, so that all others stay along the curve without gaps.
+    uint of_all = texelFetch(choice, int(CHOICE_OF_BLOCK)).x;
+    uint number = turn < of_all ? morton_code(block) * of_all + turn : 0x80000000u | morton_code(block);
     vec4 random = photon_random(number, 0u);
     Place place = draw_texel(level, ivec2(block), (float(turn) + random.x) / float(of_block));
 
@@ -194,12 +201,12 @@ void main() {
         bent += change * (dot(point.tangent - middle, step) / dot(step, step));
     }
     vec4 beam[3] = pack_beam(Beam(origin_change[0], origin_change[1], direction_change[0], direction_change[1]));
-    uint first = ARRIVAL_BEAM_TEXELS * photon;
-    arrival_beams[first] = beam[0];
-    arrival_beams[first + 1u] = beam[1];
-    arrival_beams[first + 2u] = beam[2];
-    arrival_beams[first + 3u] = vec4(normals[0], normals[1].x);
-    arrival_beams[first + 4u] = vec4(normals[1].yz, 0.0, 0.0);
+    uint texel_of_beam = ARRIVAL_BEAM_TEXELS * photon;
+    arrival_beams[texel_of_beam] = beam[0];
+    arrival_beams[texel_of_beam + 1u] = beam[1];
+    arrival_beams[texel_of_beam + 2u] = beam[2];
+    arrival_beams[texel_of_beam + 3u] = vec4(normals[0], normals[1].x);
+    arrival_beams[texel_of_beam + 4u] = vec4(normals[1].yz, 0.0, 0.0);
     surfaces[2u * photon] = surface;
     surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), pack_direction(normalize(bent)));
 }

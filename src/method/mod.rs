@@ -37,6 +37,11 @@ pub(crate) trait Method {
     /// Why the scene or the options leave it nothing to do.
     fn skip(options: &Self::Options, facts: &Facts) -> Option<&'static str>;
 
+    /// What the options ask for and the method does less of, since buffers hold no more: a sentence.
+    fn reduced(_: &Self::Options) -> Option<String> {
+        None
+    }
+
     /// Declares its passes in the order in which they run. Returns the slot's radiance in W/(m² sr), one texel a pixel; none where it is black.
     ///
     /// # Errors

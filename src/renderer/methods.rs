@@ -24,6 +24,7 @@ pub(crate) struct MethodEntry {
     pub(crate) light_paths: fn(&Settings) -> LightPaths,
     pub(crate) inputs: fn(&Settings) -> Inputs,
     pub(crate) skip: fn(&Settings, &Facts) -> Option<&'static str>,
+    pub(crate) reduced: fn(&Settings) -> Option<String>,
     pub(crate) declare: Declare,
 }
 
@@ -53,6 +54,7 @@ macro_rules! entries {
             light_paths: |settings| <crate::$slot::$module::$method as Method>::light_paths(&settings.$module),
             inputs: |settings| <crate::$slot::$module::$method as Method>::inputs(&settings.$module),
             skip: |settings, facts| <crate::$slot::$module::$method as Method>::skip(&settings.$module, facts),
+            reduced: |settings| <crate::$slot::$module::$method as Method>::reduced(&settings.$module),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
         }),*]
     };
@@ -108,6 +110,15 @@ impl Methods {
 }
 
 impl Settings {
+    /// What the settings ask for and their methods do less of, a sentence each. A renderer that takes the settings warns of it.
+    pub fn reduced(&self) -> Vec<String> {
+        let methods = Slot::ALL.into_iter().filter_map(|slot| match self.methods.filler(slot) {
+            Some(Filler::Method(method)) => (method.reduced)(self),
+            _ => None,
+        });
+        methods.collect()
+    }
+
     /// Scatterings between the light and the first visible surface that the methods account for, at most; `None`: no limit. What
     /// a reference of equal light paths is limited to.
     pub fn bounces(&self) -> Option<u32> {

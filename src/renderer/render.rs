@@ -132,12 +132,7 @@ impl Renderer {
         Ok(Some(estimates.means(&asked, samples, request.timing, seen, timings)?))
     }
 
-    fn draw_once(
-        &mut self,
-        scene: &Scene,
-        request: &FrameRequest,
-        means: Option<&Means>,
-    ) -> Result<Drawn, Error> {
+    fn draw_once(&mut self, scene: &Scene, request: &FrameRequest, means: Option<&Means>) -> Result<Drawn, Error> {
         let start = Instant::now();
         let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -298,7 +293,11 @@ pub(super) fn want(graph: &mut Graph<'_>, declared: &Declared, request: &FrameRe
 }
 
 fn check(settings: &Settings) -> Result<(), Error> {
-    settings.check().map_err(|fault| Error::Settings(fault.to_string()))
+    settings.check().map_err(|fault| Error::Settings(fault.to_string()))?;
+    for sentence in settings.reduced() {
+        tracing::warn!("{sentence}");
+    }
+    Ok(())
 }
 
 impl std::fmt::Debug for Renderer {

@@ -249,6 +249,24 @@ mod tests {
     }
 
     #[test]
+    fn what_buffers_do_not_hold_is_said() {
+        let mut settings = Settings::new(Technique::Hybrid, Preset::Default);
+        assert!(settings.reduced().is_empty());
+        for (key, value) in
+            [("photons.max", "4000000"), ("photons.bounces", "4"), ("vpl.visibility", "ism"), ("vpl.count", "65536")]
+        {
+            settings.set(key, value).expect("within its range");
+        }
+        let said = settings.reduced().join("\n");
+        assert!(said.contains("4000000") && said.contains("699050"), "{said}");
+        assert!(said.contains("vpl.ism_resolution is") && said.contains("of 65536 VPLs"), "{said}");
+        // What another method has does not matter.
+        settings.methods.caustics = CausticsMethod::None;
+        settings.methods.diffuse = DiffuseMethod::None;
+        assert!(settings.reduced().is_empty());
+    }
+
+    #[test]
     fn all_presets_of_all_techniques_are_within_their_ranges() {
         for technique in Technique::ALL {
             for preset in Preset::ALL {

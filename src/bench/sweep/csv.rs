@@ -30,7 +30,8 @@ pub fn csv(sweep: &Sweep) -> String {
         sweep.grid.series.iter().flat_map(|series| series.vary.keys()).map(String::as_str).collect();
     let errors = ["equal", "full"].into_iter().flat_map(|prefix| ERRORS.map(|name| format!("{prefix}_{name}")));
     let names = LEADING.into_iter().chain(keys.iter().copied()).chain(MEASURED).map(str::to_owned);
-    let mut out = csv_line(names.chain(errors));
+    let counts = sweep.grid.counts.keys().cloned();
+    let mut out = csv_line(names.chain(errors).chain(counts));
     for scene in &sweep.grid.scenes {
         for mark in lines(sweep, &scene.name).iter().flat_map(|line| &line.marks) {
             out += &csv_line(cells(sweep, &keys, mark));
@@ -54,6 +55,7 @@ fn cells(sweep: &Sweep, keys: &BTreeSet<&str>, mark: &Mark<'_>) -> Vec<String> {
         cells.extend(error_cells(sweep.grid.errors(run, compare)));
         cells.push(sweep.grid.noise(run, compare).map(|noise| noise.to_string()).unwrap_or_default());
     }
+    cells.extend(sweep.grid.counts.values().map(|name| run.counts.get(name).map(u64::to_string).unwrap_or_default()));
     cells
 }
 
@@ -72,6 +74,8 @@ mod tests {
     fn every_point_is_a_row_of_as_many_cells() {
         let mut sweep = whole();
         sweep.points[6].run.error = None;
+        sweep.grid.counts = [("sent".to_owned(), "a/b.photons".to_owned())].into();
+        sweep.points[0].run.counts = [("a/b.photons".to_owned(), 17_021)].into();
         let text = csv(&sweep);
         let rows: Vec<Vec<&str>> = text.split_terminator("\r\n").map(|line| line.split(',').collect()).collect();
         assert_eq!(rows.len(), 15);
@@ -83,6 +87,7 @@ mod tests {
         assert_eq!((cell(3, "rsm.vpls"), cell(3, "lights.resolution"), cell(3, "scene")), ("256", "", "ring"));
         assert_eq!((cell(7, "rsm.vpls"), cell(7, "lights.resolution"), cell(7, "series")), ("", "256", "shadows"));
         assert_eq!((cell(7, "equal_rrmse"), cell(1, "pareto"), cell(1, "width")), ("", "true", "256"));
+        assert_eq!((cell(1, "sent"), cell(2, "sent")), ("17021", ""));
         let error = sweep.points[0].run.error_full.as_ref().expect("compared")["image"].rrmse;
         assert_eq!(cell(1, "full_rrmse"), error.to_string());
     }

@@ -37,6 +37,9 @@ pub struct Grid {
     /// Columns of tables: times of passes added up, by the beginnings of their full names.
     #[serde(default)]
     pub columns: BTreeMap<String, Vec<String>>,
+    /// Further columns: counters of work in one frame, each by its full name, `piece/pass.name`.
+    #[serde(default)]
+    pub counts: BTreeMap<String, String>,
     /// What others have measured, shown beside the points that it belongs to.
     #[serde(default)]
     pub published: Vec<Published>,

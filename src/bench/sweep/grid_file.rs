@@ -79,6 +79,8 @@ struct File {
     #[serde(default)]
     columns: BTreeMap<String, Vec<String>>,
     #[serde(default)]
+    counts: BTreeMap<String, String>,
+    #[serde(default)]
     published: Vec<Published>,
     scenes: Vec<toml::Value>,
     series: Vec<toml::Table>,
@@ -159,6 +161,7 @@ fn parse(text: &str) -> Result<Grid, String> {
         entry: file.entry,
         metric: file.metric,
         columns: file.columns,
+        counts: file.counts,
         published: file.published,
         scenes: scenes.collect::<Result<_, _>>()?,
         series: series.collect::<Result<_, _>>()?,

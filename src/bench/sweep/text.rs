@@ -31,12 +31,13 @@ const ERROR_COLUMNS: [&str; 4] = ["rrmse equal", "rrmse full", "flip", "Pareto"]
 fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     let columns: Vec<String> = sweep.grid.columns.keys().map(|name| format!("{name} ms")).collect();
     let mut header = vec!["series", "values"];
+    header.extend(sweep.grid.counts.keys().map(String::as_str));
     header.extend(columns.iter().map(String::as_str));
     header.push("frame ms");
     if sweep.grid.reference.is_some() {
         header.extend(ERROR_COLUMNS);
     }
-    let numbers: Vec<usize> = (2..3 + columns.len() + ERROR_COLUMNS.len() - 1).collect();
+    let numbers: Vec<usize> = (2..3 + sweep.grid.counts.len() + columns.len() + ERROR_COLUMNS.len() - 1).collect();
     let mut table = table(&header, &numbers);
     for line in lines {
         for mark in &line.marks {
@@ -70,6 +71,8 @@ fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
     let columns = sweep.grid.columns.iter();
     let columns = columns.map(|(name, passes)| time_cell(column_ms(&measured.run, passes), theirs(name)));
     let mut cells = vec![measured.series.clone(), values.collect::<Vec<_>>().join(", ")];
+    let count = |name: &String| measured.run.counts.get(name).map(u64::to_string).unwrap_or_default();
+    cells.extend(sweep.grid.counts.values().map(count));
     cells.extend(columns);
     cells.push(time_cell(mark.time_ms, theirs(FRAME_COLUMN)));
     if sweep.grid.reference.is_some() {
@@ -159,7 +162,10 @@ mod tests {
             values: BTreeMap::from([("rsm.vpls".to_owned(), Value::from(64))]),
             ms: BTreeMap::from([("gather".to_owned(), 7.25)]),
         }];
+        sweep.grid.counts = BTreeMap::from([("sent".to_owned(), "diffuse/rsm/vpls.VPLs".to_owned())]);
+        sweep.points[0].run.counts = BTreeMap::from([("diffuse/rsm/vpls.VPLs".to_owned(), 12_345)]);
         let text = scene_text(&sweep, "ring");
+        assert!(text.contains("sent") && text.contains("12345"), "{text}");
         let row = |words: &str| text.lines().find(|line| line.contains(words)).expect("a row").to_owned();
         assert!(row("rsm.vpls 64").contains("3.500 (7.25)"), "{text}");
         assert!(row("rsm.vpls 16").contains("3.500") && !row("rsm.vpls 16").contains('('), "{text}");

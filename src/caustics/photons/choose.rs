@@ -8,11 +8,16 @@ use crate::frame::light_set::LightSet;
 use crate::frame::view_layout::TILE;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
-use crate::shaders::photons::{Choose, ChoosePush, List, ListPush, Pyramid, PyramidPush};
+use crate::shaders::photons::{Choose, ChoosePush, List, ListPush, Mark, MarkPush, Number, Pyramid, PyramidPush};
 use crate::shaders::types;
 
 /// Words of the pyramid before its sums (glsl/photons/pyramid.glsl).
 const PYRAMID_COUNTS: u32 = 32;
+/// The word of them that counts the mask's texels that are no numbers.
+const PYRAMID_DROPPED: usize = 31;
+/// Side of a square of blocks that one group marks, and the words of its marks (glsl/photons/squares.glsl).
+const SQUARE_SIDE: u32 = 32;
+const SQUARE_WORDS: usize = 32;
 /// Levels that one pass adds.
 const LEVELS_OF_PASS: usize = 2;
 
@@ -20,7 +25,7 @@ const LEVELS_OF_PASS: usize = 2;
 const CHOICE_LEVEL: usize = 3;
 pub(crate) const CHOICE_PHOTONS: usize = 5;
 pub(crate) const CHOICE_EMIT: usize = 6;
-const CHOICE_LISTED: usize = 9;
+const CHOICE_BLOCKS: usize = 9;
 const CHOICE_WORDS: usize = 10;
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
@@ -97,7 +102,10 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
             pyramid: made.pyramid.read_write(),
             push: PyramidPush { level: level as u32, columns, count },
         };
-        graph.pass(&format!("caustics/photons/choose/mask.{level}"), pass).threads([count, 1, 1]);
+        let name = format!("caustics/photons/choose/mask.{level}");
+        let pass = graph.pass(&name, pass);
+        let pass = if level == 0 { pass.count("dropped", made.pyramid, PYRAMID_DROPPED) } else { pass };
+        pass.threads([count, 1, 1]);
     }
 
     let pass = Choose {
@@ -115,19 +123,44 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         .count("photons", made.choice, CHOICE_PHOTONS)
         .groups([1, 1, 1]);
 
-    let pass = List {
+    list(graph, views, &made, level_count as u32, most);
+    made
+}
+
+/// Numbers the blocks of the chosen level that get photons, in the order of the atlas.
+fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count: u32, most: u32) {
+    let squares: usize = views.mask.info().extent[..2].iter().map(|side| side.div_ceil(SQUARE_SIDE) as usize).product();
+    let marks = graph.buffer::<u32>("photons.marks", SQUARE_WORDS * squares);
+    let square_counts = graph.buffer::<u32>("photons.square_counts", squares);
+    let square_firsts = graph.buffer::<u32>("photons.square_firsts", squares + 1);
+    let pass = Mark {
         mask: views.mask.sampled(),
         levels: made.levels.clone(),
         pyramid: made.pyramid.texels(WORDS),
-        choice: made.choice.read_write(),
+        choice: made.choice.texels(WORDS),
+        marks: marks.write(),
+        square_counts: square_counts.write(),
+        push: MarkPush { level_count },
+    };
+    graph.pass("caustics/photons/choose/mark", pass).threads_indirect(made.choice, 0);
+
+    let pass = Number {
+        choice: made.choice.texels(WORDS),
+        square_counts: square_counts.read(),
+        square_firsts: square_firsts.write(),
+    };
+    graph.pass("caustics/photons/choose/number", pass).groups([1, 1, 1]);
+
+    let pass = List {
+        marks: marks.read(),
+        square_firsts: square_firsts.read(),
         blocks: made.blocks.write(),
-        push: ListPush { level_count: level_count as u32, capacity: most },
+        push: ListPush { capacity: most },
     };
     graph
         .pass("caustics/photons/choose/list", pass)
-        .count("blocks", made.choice, CHOICE_LISTED)
+        .count("blocks", made.choice, CHOICE_BLOCKS)
         .threads_indirect(made.choice, 0);
-    made
 }
 
 impl Choice {

@@ -41,6 +41,13 @@ const LARGEST_BUFFER: u32 = 1 << 27;
 const ARRIVAL_BYTES: u32 = 80;
 const DISC_BYTES: u32 = 48;
 
+/// Photons that are sent, of `options.max`.
+fn held(options: &PhotonOptions) -> u32 {
+    options.max.min(LARGEST_BUFFER / ARRIVAL_BYTES).min(LARGEST_BUFFER / DISC_BYTES / options.bounces.max(1))
+}
+// The arithmetic of shares takes no more (glsl/photons/shares.glsl).
+const _: () = assert!(LARGEST_BUFFER / ARRIVAL_BYTES < 1 << 21);
+
 /// Photons from the specular surfaces that lights see, splatted.
 pub(crate) struct Photons;
 
@@ -65,6 +72,16 @@ impl Method for Photons {
             (.., 0) => Some("no photons asked for"),
             _ => None,
         }
+    }
+
+    fn reduced(options: &PhotonOptions) -> Option<String> {
+        let (max, held) = (options.max, held(options));
+        (held < max).then(|| {
+            format!(
+                "photons.max is {max}, but buffers hold {held} at photons.bounces {}: so many are sent",
+                options.bounces
+            )
+        })
     }
 
     fn declare(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> Result<Option<ImageRef>, Error> {
@@ -95,16 +112,12 @@ pub(crate) struct TracedPhotons {
     pub(crate) rays: PhotonRays,
 }
 
-/// Photons from the specular surfaces that lights see to where they land. At most `max`, and as many as fit into one buffer if all land at
+/// Photons from the specular surfaces that lights see to where they land: `max` of them, or as many as fit into one buffer if all land at
 /// every bounce.
 pub(crate) fn trace_all(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> TracedPhotons {
     let FrameInputs { data, geometry, camera, set, .. } = *cx.frame;
     let stages = options.bounces.max(1) as usize;
-    let capacity = options
-        .max
-        .min(LARGEST_BUFFER / ARRIVAL_BYTES)
-        .min(LARGEST_BUFFER / DISC_BYTES / options.bounces.max(1))
-        .max(1);
+    let capacity = held(options).max(1);
     let views = views::specular_views(cx);
     let choice = choose::choose(cx.graph, set, &views, capacity, stages);
     let landed = LandedPhotons::declare(cx.graph, choice.counts, stages, capacity * options.bounces.max(1));

@@ -91,8 +91,8 @@ impl<'de> Deserialize<'de> for PhotonGeometry {
 options! {
     /// Options of the `photons` caustics method (Quyen 2014, section 3.3).
     PhotonOptions, "photons":
-    /// Photons that leave the specular surfaces which lights see, at most; buffers of 128 MiB hold 1.68 million, or 2.8 million over `bounces` if
-    /// that is less.
+    /// Photons that leave the specular surfaces which lights see; buffers of 128 MiB hold 1.68 million, or 2.8 million over `bounces` if
+    /// that is less. All of them are sent.
     max: u32 = 38_000, draft = 9_500, paper = 38_146; OptionKind::Integer(0, 1 << 22), "photons", "linear";
     /// Specular reflections and refractions of a photon at most; 0: no caustics.
     bounces: u32 = 2, high = 4, paper = 1; OptionKind::Integer(0, 16), "scatterings", "linear";

@@ -55,7 +55,7 @@ struct SurfacePoints {
 }
 
 /// Side of the maps of so many VPLs, texels.
-fn resolution_for(vpl_count: u32, options: &VplOptions) -> u32 {
+pub(super) fn resolution_for(vpl_count: u32, options: &VplOptions) -> u32 {
     options.ism_resolution.min((MOST_TEXELS / vpl_count.max(1)).isqrt()).max(1)
 }
 

@@ -45,6 +45,16 @@ impl Method for Vpl {
         }
     }
 
+    fn reduced(options: &VplOptions) -> Option<String> {
+        let count = paths::count_of_all(options);
+        let (side, asked) = (ism::resolution_for(count, options), options.ism_resolution);
+        (options.visibility == VplVisibility::Ism && side < asked).then(|| {
+            format!(
+                "vpl.ism_resolution is {asked}, but imperfect shadow maps of {count} VPLs have {side} texels to a side"
+            )
+        })
+    }
+
     fn declare(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Result<Option<ImageRef>, Error> {
         Ok(Some(vpl(cx, options).diffuse))
     }

@@ -25,6 +25,11 @@ fn counts(first: u32, bounces: u32) -> Vec<u32> {
         .collect()
 }
 
+/// VPLs of all bounces.
+pub(super) fn count_of_all(options: &VplOptions) -> u32 {
+    counts(options.count, options.bounces).iter().sum()
+}
+
 /// Declares the passes that add the bounces beyond the first to `first_bounce`; returns the VPLs of all.
 pub(super) fn with_bounces(
     cx: &mut FrameCx<'_, '_>,
