@@ -51,7 +51,9 @@ vec3 towards_middle(vec3 drawn, vec3 arriving, vec3 normal, bool below, float re
         middle = relative_ior == 1.0 ? arriving : refract(arriving, normal, 1.0 / relative_ior);
     }
     float share = dot(middle, middle) > 0.5 ? lobe_in_disc(alpha) : 0.0;
-    return normalize(mix(drawn, middle, share));
+    // Half way between opposite directions there is none.
+    vec3 between = mix(drawn, middle, share);
+    return dot(between, between) > 1e-12 ? normalize(between) : drawn;
 }
 
 // How the neighbours of a photon that arrived go on.
