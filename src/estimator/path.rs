@@ -93,7 +93,7 @@ impl PathTracer {
             };
             let mut depth = 0;
             loop {
-                let mut graph = Graph::new(&mut self.work.store);
+                let mut graph = Graph::going_on(&mut self.work.store);
                 let paths = Paths::declare(&mut graph, &scene, view, capacity);
                 // What is added to later: memory that a submission does not name is returned.
                 let _sums = Sums::declare(&mut graph, &wave);
@@ -115,7 +115,7 @@ impl PathTracer {
                     break;
                 }
             }
-            let mut graph = Graph::new(&mut self.work.store);
+            let mut graph = Graph::going_on(&mut self.work.store);
             let paths = Paths::declare(&mut graph, &scene, view, capacity);
             let sums = Sums::declare(&mut graph, &wave);
             if done == 0 {
@@ -155,7 +155,7 @@ impl PathTracer {
                 };
                 let mut depth = 0;
                 loop {
-                    let mut graph = Graph::new(&mut self.work.store);
+                    let mut graph = Graph::going_on(&mut self.work.store);
                     let paths = Paths::declare(&mut graph, &scene, view, capacity);
                     let splats = Splats::declare(&mut graph, &scene, view, limit)?;
                     if depth == 0 {
@@ -178,7 +178,7 @@ impl PathTracer {
                 }
             }
         }
-        let mut graph = Graph::new(&mut self.work.store);
+        let mut graph = Graph::going_on(&mut self.work.store);
         let splats = Splats::declare(&mut graph, &scene, view, limit)?;
         let read_back = splats.read_back(&mut graph);
         let mut executed = graph.run(self.work.timing)?;
@@ -210,7 +210,7 @@ impl Estimating for PathTracer {
         let limit = self.work.store.device().limits().max_storage_buffer_range;
         let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
         let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
-        let mut graph = Graph::new(&mut self.work.store);
+        let mut graph = Graph::going_on(&mut self.work.store);
         let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
         let sums = Sums::declare(&mut graph, &wave);
         camera_paths::generate(&mut graph, &paths, view, &wave);

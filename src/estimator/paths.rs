@@ -179,10 +179,10 @@ impl Paths {
     /// Empties all queues, for a wave that starts.
     pub(super) fn clear_queues(&self, graph: &mut Graph<'_>, walk: Walk) {
         let clear = shaders::Clear {
-            active_paths: self.active(0).read_write(),
-            next_paths: self.active(1).read_write(),
-            alive_paths: self.alive.read_write(),
-            connections: self.connections.read_write(),
+            active_paths: self.active(0).start_then_read(),
+            next_paths: self.active(1).start_then_read(),
+            alive_paths: self.alive.start_then_read(),
+            connections: self.connections.start_then_read(),
         };
         graph.pass(&walk.pass("clear"), clear).groups([1, 1, 1]);
     }

@@ -57,8 +57,10 @@ impl PhotonMap {
             photon_order: graph.buffer("sppm.photon_order", photons),
             bits,
         };
-        graph.keep_for_passes(map.points);
-        graph.keep_for_passes(map.photons);
+        for records in [map.points, map.photons] {
+            graph.start_undefined(records);
+            graph.keep_for_passes(records);
+        }
         for words in [map.point_queue, map.photon_queue, map.bucket_counts] {
             graph.keep_for_passes(words);
         }
@@ -73,7 +75,7 @@ impl PhotonMap {
     }
 
     fn clear_queue(&self, graph: &mut Graph<'_>, name: &str, queue: BufferRef<u32>) {
-        graph.pass(name, shaders::Clear { queue: queue.read_write() }).groups([1, 1, 1]);
+        graph.pass(name, shaders::Clear { queue: queue.start_then_read() }).groups([1, 1, 1]);
     }
 
     /// Leaves the measurement points among the camera's vertices number `depth`.

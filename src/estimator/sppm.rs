@@ -130,7 +130,7 @@ impl Mapping<'_> {
 
     /// Declares what stands between the submissions of a pass.
     fn declare<'s>(&'s mut self, wave: &Wave) -> (Graph<'s>, &'s TracedScene, &'s View, Paths, PhotonMap, Sums) {
-        let mut graph = Graph::new(&mut self.work.store);
+        let mut graph = Graph::going_on(&mut self.work.store);
         let mut paths = Paths::declare(&mut graph, self.scene, &self.view, 64 * self.run_blocks);
         let all = self.scene.sky == [0.0; 3] && !self.scene.ranged_lights;
         // PHOTONS_ALL or PHOTONS_SOME of glsl/path/state.glsl; light paths are not connected to the camera, and weigh nothing.

@@ -62,7 +62,7 @@ impl PassChecks {
                 if word >= MOST_OUTPUTS {
                     return;
                 }
-                let name = format!("check/{pass}");
+                let name = format!("check/{pass}.{resource}");
                 match output {
                     Output::Image(image) if is_flat_and_float(image.info()) => {
                         look_at(graph, &name, *image, (faults, word), radiance.contains(resource));

@@ -58,7 +58,12 @@ pub(crate) fn estimated(
         let shared = if whole { means.clone() } else { rows.into() };
         let held = graph.upload_shared::<f32>(&format!("estimate.{name}.means"), shared, hash_of(&(key, part)), all);
         let push = EstimatePush { first_row: (part * rows_at_once) as u32, row_count: (rows.len() / row_bytes) as u32 };
-        let pass = Estimate { means: held.read(), slot: if whole { image.write() } else { image.modify() }, push };
+        let slot = match part {
+            _ if whole => image.write(),
+            0 => image.start(),
+            _ => image.modify(),
+        };
+        let pass = Estimate { means: held.read(), slot, push };
         graph.pass(&format!("compose/estimate-{name}"), pass).pixels([size[0], push.row_count]);
     }
     image

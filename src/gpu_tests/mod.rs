@@ -13,6 +13,7 @@ mod estimates;
 mod flux;
 mod gather;
 mod graph;
+mod graph_mistakes;
 mod groups;
 mod hybrid;
 mod invariance;

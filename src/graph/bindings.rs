@@ -60,6 +60,11 @@ impl ImageRef {
         WriteImage(Some(self.access(ImageUse::StorageWrite)))
     }
 
+    /// Some texels are written; what the others hold is undefined, and nobody may care.
+    pub(crate) fn start(self) -> WriteImage {
+        WriteImage(Some(self.access(ImageUse::StorageStart)))
+    }
+
     /// Some texels are written; the others keep what they held.
     pub(crate) fn modify(self) -> WriteImage {
         WriteImage(Some(self.access(ImageUse::StorageModify)))
@@ -114,6 +119,11 @@ impl<T> BufferRef<T> {
         WriteBuffer(Some(self.access(BufferUse::Write)), PhantomData)
     }
 
+    /// Some elements are written; what the others hold is undefined, and nobody may care.
+    pub(crate) fn start(self) -> WriteBuffer<T> {
+        WriteBuffer(Some(self.access(BufferUse::Start)), PhantomData)
+    }
+
     /// Some elements are written; the others keep what they held.
     pub(crate) fn modify(self) -> WriteBuffer<T> {
         WriteBuffer(Some(self.access(BufferUse::Modify)), PhantomData)
@@ -126,6 +136,11 @@ impl<T> BufferRef<T> {
     /// Every element is written before it is read; what was there before does not matter.
     pub(crate) fn write_then_read(self) -> ReadWriteBuffer<T> {
         ReadWriteBuffer(Some(self.access(BufferUse::Write)), PhantomData)
+    }
+
+    /// Some elements are written, before they are read; what the others hold is undefined, and nobody may care.
+    pub(crate) fn start_then_read(self) -> ReadWriteBuffer<T> {
+        ReadWriteBuffer(Some(self.access(BufferUse::Start)), PhantomData)
     }
 
     /// As texels of `format`, the fastest way to read a list in an inner loop on the software driver.
@@ -152,6 +167,8 @@ pub(crate) enum ImageUse {
     StorageRead,
     /// Writes everything.
     StorageWrite,
+    /// Writes some; nobody cares for what the rest holds.
+    StorageStart,
     /// Reads or keeps what it does not write.
     StorageModify,
     /// A colour attachment; `keep`: drawn over what it holds.
@@ -173,7 +190,11 @@ pub(crate) enum ImageUse {
 pub(crate) enum BufferUse {
     Uniform,
     Read,
+    /// Writes everything.
     Write,
+    /// Writes some; nobody cares for what the rest holds.
+    Start,
+    /// Reads or keeps what it does not write.
     Modify,
     Texels(vk::Format),
     Indirect,

@@ -59,6 +59,13 @@ impl<'g, 's> PassBuilder<'g, 's> {
         self
     }
 
+    /// Says that what the pass writes is in another order each time it runs, as atomics leave it, though the same in what it holds. It then never meets
+    /// what came of another order.
+    pub(crate) fn unordered(mut self) -> Self {
+        self.pass.needs.unordered = true;
+        self
+    }
+
     fn targets(&mut self) -> &mut Targets {
         &mut self.pass.raster.as_mut().expect("only raster passes have attachments").1
     }
@@ -120,7 +127,9 @@ impl<'g, 's> PassBuilder<'g, 's> {
             .and_then(|(state, _)| state.stencil)
             .is_some_and(|stencil| stencil.pass == vk::StencilOp::KEEP);
         let clears_depth = self.targets().depth.as_ref().is_some_and(|(_, clear)| clear.is_some());
-        let keep = clear.is_none() || (image.info.aspect().contains(vk::ImageAspectFlags::DEPTH) && !clears_depth);
+        let written = self.graph.is_written(image);
+        let holds_depth = written && image.info.aspect().contains(vk::ImageAspectFlags::DEPTH);
+        let keep = clear.is_none() || (holds_depth && !clears_depth);
         let usage = if clear.is_none() && tests && self.targets().depth.is_none() {
             ImageUse::DepthTest
         } else {

@@ -26,6 +26,10 @@ pub(crate) struct Graph<'s> {
     pub(super) read_backs: Vec<(usize, u32)>,
     pub(super) growing: Vec<Growing>,
     pub(super) watcher: Option<Watcher>,
+    /// Whether what earlier graphs on the same store left may be read.
+    pub(super) goes_on: bool,
+    /// The first mistake that the frame was declared with, as a sentence.
+    pub(super) mistake: Option<String>,
 }
 
 /// What a pass wrote.
@@ -37,6 +41,9 @@ pub(crate) enum Output {
 
 /// Declares passes that look at the outputs of the one that was just declared, whose name it gets.
 pub(crate) type Watcher = Box<dyn FnMut(&mut Graph<'_>, &str, &[(String, Output)])>;
+
+/// The key of what nobody has written.
+pub(super) const NOTHING: u64 = 0;
 
 /// A buffer whose size only the device finds out.
 pub(super) struct Growing {
@@ -58,7 +65,19 @@ impl<'s> Graph<'s> {
             read_backs: Vec::new(),
             growing: Vec::new(),
             watcher: None,
+            goes_on: false,
+            mistake: None,
         }
+    }
+
+    /// One of several that do a work together, submission by submission: what earlier ones left may be read.
+    pub(crate) fn going_on(store: &'s mut Store) -> Graph<'s> {
+        Graph { goes_on: true, ..Graph::new(store) }
+    }
+
+    /// Notes a mistake; the first one is what running the frame fails with.
+    pub(super) fn note_mistake(&mut self, sentence: impl FnOnce() -> String) {
+        self.mistake.get_or_insert_with(sentence);
     }
 
     /// Whether the device is a software driver, where other variants of a pass may be the faster ones.
@@ -72,14 +91,16 @@ impl<'s> Graph<'s> {
     }
 
     fn add(&mut self, name: &str, body: Body, places: u32, content: impl Fn(u32) -> (u64, Dependence)) -> usize {
-        debug_assert!(self.resources.iter().all(|resource| resource.name != name), "{name} is declared twice");
+        if self.resources.iter().any(|resource| resource.name == name) {
+            self.note_mistake(|| format!("two resources are called {name}"));
+        }
         let content = (0..places).map(content).collect();
         let (image_usage, buffer_usage) = Default::default();
         self.resources.push(Resource { name: name.to_owned(), body, content, image_usage, buffer_usage, piece: None });
         self.resources.len() - 1
     }
 
-    /// An image of the frame. What it held in the last frame stands until a pass writes it.
+    /// An image of the frame. No pass may read it before one has written it, but in a graph that goes on ([`Graph::going_on`]).
     pub(crate) fn image(&mut self, name: &str, format: vk::Format, extent: [u32; 2]) -> ImageRef {
         self.image_with(
             name,
@@ -89,9 +110,15 @@ impl<'s> Graph<'s> {
 
     /// An image of any shape.
     pub(crate) fn image_with(&mut self, name: &str, info: ImageInfo) -> ImageRef {
-        let held: Vec<u64> = (0..info.mips).map(|mip| self.store.image_key(name, &info, mip).unwrap_or(0)).collect();
+        let left = |mip: u32| self.store.image_key(name, &info, mip).filter(|_| self.goes_on).unwrap_or(NOTHING);
+        let held: Vec<u64> = (0..info.mips).map(left).collect();
         let id = self.add(name, Body::Image(info), info.mips, |mip| (held[mip as usize], Dependence::NONE));
         ImageRef { id, mips: (0, info.mips), info }
+    }
+
+    /// Whether a pass has written the first of the image's levels.
+    pub(super) fn is_written(&self, image: ImageRef) -> bool {
+        self.resources[image.id].content[image.mips.0 as usize].0 != NOTHING
     }
 
     /// The name that an image was declared by.
@@ -99,10 +126,10 @@ impl<'s> Graph<'s> {
         &self.resources[image.id].name
     }
 
-    /// A buffer of `count` elements. What it held in the last frame stands until a pass writes it.
+    /// A buffer of `count` elements. As with images, writing comes first.
     pub(crate) fn buffer<T>(&mut self, name: &str, count: usize) -> BufferRef<T> {
         let bytes = (size_of::<T>() * count) as u64;
-        let held = self.store.buffer_key(name, bytes).unwrap_or(0);
+        let held = self.store.buffer_key(name, bytes).filter(|_| self.goes_on).unwrap_or(NOTHING);
         let id = self.add(name, Body::Buffer { bytes }, 1, |_| (held, Dependence::NONE));
         BufferRef { id, count, element: PhantomData }
     }
@@ -118,9 +145,13 @@ impl<'s> Graph<'s> {
     /// that there was not enough, [`Executed::outgrown`] says so, and the frame has to be declared and made again; if the device does not allow
     /// as many, the frame fails.
     pub(crate) fn grows<T>(&mut self, buffer: BufferRef<T>, needed: BufferRef<u32>, index: usize) {
+        let needed_words = needed.count;
         let needed = self.read_back_buffer(needed);
         let name = self.resources[buffer.id].name.clone();
         let most = self.store.largest_buffer() / size_of::<T>().max(1);
+        if index >= needed_words {
+            self.note_mistake(|| format!("{name} grows by word {index} of a buffer of {needed_words}"));
+        }
         self.growing.push(Growing { name, capacity: buffer.count, most, needed, index });
     }
 
@@ -195,6 +226,14 @@ impl<'s> Graph<'s> {
         self.add_pass(Pass::transfer(name, access, word.to_le_bytes().to_vec(), work));
     }
 
+    /// Says that passes fill the buffer element by element, and that nobody cares for what it holds before.
+    pub(crate) fn start_undefined<T>(&mut self, buffer: BufferRef<T>) {
+        let resource = &mut self.resources[buffer.id];
+        if resource.content[0].0 == NOTHING {
+            resource.content[0].0 = hash_of(&("undefined", &resource.name));
+        }
+    }
+
     /// Notes a piece or pass that the scene does not need, and why.
     pub(crate) fn skip(&mut self, name: &str, reason: &str) {
         self.passes.push(Pass::skipped(name, reason));
@@ -249,14 +288,16 @@ impl<'s> Graph<'s> {
 
     /// Derives the usage flags, contents and needs of a pass from its accesses, and adds it.
     pub(super) fn add_pass(&mut self, mut pass: Pass) {
+        self.note_mistakes_of(&pass);
         let mut hasher = DefaultHasher::new();
         pass.hash_work(&mut hasher);
         let accesses: Vec<Access> = pass.accesses().cloned().collect();
         for access in &accesses {
-            access.hash(&mut hasher);
+            self.hash_access(access, &mut hasher);
             for (place, reads, _) in places(access) {
                 let (key, dependence) = self.resources[place.0].content[place.1 as usize];
                 if reads {
+                    self.note_read_of_nothing(&pass, place, key);
                     key.hash(&mut hasher);
                     // The same work on an image or buffer of another size gives another result.
                     match &self.resources[place.0].body {
@@ -274,9 +315,8 @@ impl<'s> Graph<'s> {
             for (place, _, writes) in places(access) {
                 if writes {
                     let mut hasher = hasher.clone();
-                    place.hash(&mut hasher);
-                    self.resources[place.0].name.hash(&mut hasher);
-                    let key = hasher.finish().max(1);
+                    (&self.resources[place.0].name, place.1).hash(&mut hasher);
+                    let key = hasher.finish().max(NOTHING + 1);
                     pass.needs.writes.push(Version { place, key });
                     self.resources[place.0].content[place.1 as usize] = (key, pass.dependence);
                 }
@@ -286,15 +326,24 @@ impl<'s> Graph<'s> {
         self.tell_watcher(&accesses);
     }
 
+    /// By the resource's name: its number is another one in a frame that asks for more.
+    fn hash_access(&self, access: &Access, hasher: &mut impl Hasher) {
+        match access {
+            Access::Image { image, mips, usage } => (&self.resources[*image].name, mips, usage).hash(hasher),
+            Access::Buffer { buffer, usage } => (&self.resources[*buffer].name, usage).hash(hasher),
+        }
+    }
+
     fn note_usage(&mut self, access: &Access, piece: &str) {
         match access {
             Access::Image { image, usage, .. } => {
                 let resource = &mut self.resources[*image];
                 resource.image_usage |= match usage {
                     ImageUse::Sampled(_) => vk::ImageUsageFlags::SAMPLED,
-                    ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => {
-                        vk::ImageUsageFlags::STORAGE
-                    }
+                    ImageUse::StorageRead
+                    | ImageUse::StorageWrite
+                    | ImageUse::StorageStart
+                    | ImageUse::StorageModify => vk::ImageUsageFlags::STORAGE,
                     ImageUse::Color { .. } => vk::ImageUsageFlags::COLOR_ATTACHMENT,
                     ImageUse::Depth { .. } | ImageUse::DepthTest => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
                     ImageUse::Clear => vk::ImageUsageFlags::TRANSFER_DST,
@@ -305,7 +354,9 @@ impl<'s> Graph<'s> {
                 let resource = &mut self.resources[*buffer];
                 resource.buffer_usage |= match usage {
                     BufferUse::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,
-                    BufferUse::Read | BufferUse::Write | BufferUse::Modify => vk::BufferUsageFlags::STORAGE_BUFFER,
+                    BufferUse::Read | BufferUse::Write | BufferUse::Start | BufferUse::Modify => {
+                        vk::BufferUsageFlags::STORAGE_BUFFER
+                    }
                     BufferUse::Texels(_) => vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
                     BufferUse::Indirect => vk::BufferUsageFlags::INDIRECT_BUFFER,
                     BufferUse::Clear => vk::BufferUsageFlags::TRANSFER_DST,
@@ -322,7 +373,7 @@ pub(super) fn places(access: &Access) -> Vec<(Place, bool, bool)> {
         Access::Image { image, mips, usage } => {
             let (reads, writes) = match usage {
                 ImageUse::Sampled(_) | ImageUse::StorageRead | ImageUse::DepthTest => (true, false),
-                ImageUse::StorageWrite | ImageUse::Clear => (false, true),
+                ImageUse::StorageWrite | ImageUse::StorageStart | ImageUse::Clear => (false, true),
                 ImageUse::StorageModify => (true, true),
                 ImageUse::Color { keep } | ImageUse::Depth { keep } => (*keep, true),
             };
@@ -331,7 +382,7 @@ pub(super) fn places(access: &Access) -> Vec<(Place, bool, bool)> {
         Access::Buffer { buffer, usage } => {
             let (reads, writes) = match usage {
                 BufferUse::Uniform | BufferUse::Read | BufferUse::Texels(_) | BufferUse::Indirect => (true, false),
-                BufferUse::Write | BufferUse::Clear => (false, true),
+                BufferUse::Write | BufferUse::Start | BufferUse::Clear => (false, true),
                 BufferUse::Modify => (true, true),
             };
             vec![((*buffer, 0), reads, writes)]

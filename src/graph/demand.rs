@@ -20,6 +20,8 @@ pub(crate) struct Version {
 pub(crate) struct Needs {
     pub(crate) reads: Vec<Version>,
     pub(crate) writes: Vec<Version>,
+    /// Whether it leaves what it writes in another order each time it runs.
+    pub(crate) unordered: bool,
 }
 
 /// Whether a pass runs.
@@ -33,11 +35,12 @@ pub(crate) enum Verdict {
 }
 
 /// Decides about `passes`, in the order of their declaration, when `wanted` is asked for and `stored` tells what each
-/// place holds.
+/// place holds. What memory holds of what came of an order never meets another one: where a pass that leaves one runs, all that is read of what
+/// came of it is made again.
 pub(crate) fn decide(passes: &[Needs], wanted: &[Version], stored: impl Fn(Place) -> Option<u64>) -> Vec<Verdict> {
     let none = vec![false; passes.len()];
     let asked = walk(passes, wanted, &none, |_| false).0;
-    verdicts(&asked, &settle(passes, wanted, &none, stored, |_| HashSet::new()))
+    verdicts(&asked, &settle(passes, wanted, &none, stored, |runs| made_anew(passes, runs, |pass| pass.unordered)))
 }
 
 /// Decides which of `passes` run so that those of them that are `forced`, and that `wanted` asks for, do once more: apart from them those alone that
@@ -53,14 +56,14 @@ pub(crate) fn decide_again(
 ) -> Vec<Verdict> {
     let asked = walk(passes, wanted, &vec![false; passes.len()], |_| false).0;
     let forced: Vec<bool> = forced.iter().zip(&asked).map(|(forced, asked)| *forced && *asked).collect();
-    verdicts(&asked, &settle(passes, &[], &forced, stored, |runs| made_anew(passes, runs)))
+    verdicts(&asked, &settle(passes, &[], &forced, stored, |runs| made_anew(passes, runs, |_| true)))
 }
 
-/// The contents that running passes make, and all that come of them.
-fn made_anew(passes: &[Needs], runs: &[bool]) -> HashSet<Version> {
+/// The contents that those running passes make which `may_differ` from what they were, and all that come of them.
+fn made_anew(passes: &[Needs], runs: &[bool], may_differ: impl Fn(&Needs) -> bool) -> HashSet<Version> {
     let mut anew = HashSet::new();
     for (pass, runs) in passes.iter().zip(runs) {
-        if *runs || pass.reads.iter().any(|read| anew.contains(read)) {
+        if (*runs && may_differ(pass)) || pass.reads.iter().any(|read| anew.contains(read)) {
             anew.extend(&pass.writes);
         }
     }
@@ -146,7 +149,11 @@ mod tests {
     fn pass(reads: &[(usize, u64)], writes: &[(usize, u64)]) -> Needs {
         let versions =
             |list: &[(usize, u64)]| list.iter().map(|&(resource, key)| Version { place: (resource, 0), key }).collect();
-        Needs { reads: versions(reads), writes: versions(writes) }
+        Needs { reads: versions(reads), writes: versions(writes), unordered: false }
+    }
+
+    fn unordered(needs: Needs) -> Needs {
+        Needs { unordered: true, ..needs }
     }
 
     fn run(passes: &[Needs], wanted: &[(usize, u64)], stored: &[(usize, u64)]) -> Vec<Verdict> {
@@ -191,6 +198,24 @@ mod tests {
             [pass(&[], &[(0, 1)]), pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1)], &[(0, 2)]), pass(&[(0, 2)], &[(2, 6)])];
         assert_eq!(run(&passes, &[(1, 5), (2, 6)], &[(0, 2)]), [Run, Run, Run, Run]);
         assert_eq!(run(&passes, &[(2, 6)], &[(0, 2)]), [Unchanged, NotAsked, Unchanged, Run]);
+    }
+
+    #[test]
+    fn an_order_never_meets_what_came_of_another() {
+        // 0 lists, 1 sorts by the list, 2 reads both; then 3 uses up the list.
+        let passes = |first: Needs| {
+            [first, pass(&[(0, 1)], &[(1, 5)]), pass(&[(0, 1), (1, 5)], &[(2, 6)]), pass(&[(0, 1)], &[(0, 2)])]
+        };
+        let listing = || pass(&[], &[(0, 1)]);
+        // The list is gone, what was sorted by it is not.
+        let stored = [(0, 2), (1, 5)];
+        assert_eq!(run(&passes(listing()), &[(2, 6)], &stored), [Run, Unchanged, Run, NotAsked]);
+        assert_eq!(run(&passes(unordered(listing())), &[(2, 6)], &stored), [Run, Run, Run, NotAsked]);
+        // Nothing has to run: all of it fits itself.
+        let whole = [(0, 1), (1, 5), (2, 6)];
+        assert_eq!(run(&passes(unordered(listing())), &[(2, 6)], &whole), [Unchanged, Unchanged, Unchanged, NotAsked]);
+        // What is wanted besides and came of the old order is made again too.
+        assert_eq!(run(&passes(unordered(listing())), &[(1, 5), (2, 6)], &stored), [Run, Run, Run, NotAsked]);
     }
 
     /// `forced` are numbers of passes; the frame wants the output of the last one.

@@ -78,6 +78,9 @@ impl Graph<'_> {
     }
 
     fn run_passes(mut self, verdicts: &[Verdict], timing: Timing) -> Result<Executed, VulkanError> {
+        if let Some(mistake) = self.mistake.take() {
+            return Err(VulkanError::Declaration(mistake));
+        }
         let result = self.execute(verdicts, timing);
         if result.is_err() {
             // Whatever was recorded may not have run.

@@ -23,6 +23,7 @@ mod dependence;
 mod describe;
 mod execute;
 mod key;
+mod mistakes;
 mod needs;
 mod nothing;
 mod pass;

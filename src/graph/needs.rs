@@ -13,7 +13,9 @@ pub(super) fn layout_of(usage: ImageUse, holds_depth: bool) -> vk::ImageLayout {
     match usage {
         ImageUse::Sampled(_) if holds_depth => READ_ONLY_DEPTH,
         ImageUse::Sampled(_) => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-        ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageModify => vk::ImageLayout::GENERAL,
+        ImageUse::StorageRead | ImageUse::StorageWrite | ImageUse::StorageStart | ImageUse::StorageModify => {
+            vk::ImageLayout::GENERAL
+        }
         ImageUse::Color { .. } => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         ImageUse::Depth { .. } => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         ImageUse::DepthTest => READ_ONLY_DEPTH,
@@ -38,7 +40,6 @@ pub(super) fn merged_needs(
         for place in places {
             match merged.iter_mut().find(|(known, known_place, _)| (*known, *known_place) == (resource, place)) {
                 Some((_, _, known)) => {
-                    debug_assert_eq!(known.layout, need.layout, "{} uses one image in two layouts", pass.full_name());
                     known.stages |= need.stages;
                     known.access |= need.access;
                     known.writes |= need.writes;
@@ -51,6 +52,23 @@ pub(super) fn merged_needs(
     merged
 }
 
+/// The image that a pass would need in two layouts at a time, if there is one.
+pub(super) fn two_layouts(pass: &Pass, holds_depth: impl Fn(usize) -> bool) -> Option<usize> {
+    let mut layouts: Vec<(usize, u32, vk::ImageLayout)> = Vec::new();
+    for access in pass.accesses() {
+        let Access::Image { image, mips, usage } = access else { continue };
+        let layout = layout_of(*usage, holds_depth(*image));
+        for mip in mips.clone() {
+            match layouts.iter().find(|(known, level, _)| (*known, *level) == (*image, mip)) {
+                Some((.., known)) if *known != layout => return Some(*image),
+                Some(_) => {}
+                None => layouts.push((*image, mip, layout)),
+            }
+        }
+    }
+    None
+}
+
 fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2, holds_depth: bool) -> Need {
     use vk::AccessFlags2 as A;
     use vk::PipelineStageFlags2 as S;
@@ -58,7 +76,7 @@ fn image_need(usage: ImageUse, shaders: vk::PipelineStageFlags2, holds_depth: bo
     let (stages, access, writes, discards) = match usage {
         ImageUse::Sampled(_) => (shaders, A::SHADER_SAMPLED_READ, false, false),
         ImageUse::StorageRead => (shaders, A::SHADER_STORAGE_READ, false, false),
-        ImageUse::StorageWrite => (shaders, A::SHADER_STORAGE_WRITE, true, true),
+        ImageUse::StorageWrite | ImageUse::StorageStart => (shaders, A::SHADER_STORAGE_WRITE, true, true),
         ImageUse::StorageModify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true, false),
         ImageUse::Color { keep } => {
             (S::COLOR_ATTACHMENT_OUTPUT, A::COLOR_ATTACHMENT_READ | A::COLOR_ATTACHMENT_WRITE, true, !keep)
@@ -79,7 +97,7 @@ fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {
         BufferUse::Uniform => (shaders, A::UNIFORM_READ, false),
         BufferUse::Read => (shaders, A::SHADER_STORAGE_READ, false),
         BufferUse::Texels(_) => (shaders, A::SHADER_SAMPLED_READ, false),
-        BufferUse::Write => (shaders, A::SHADER_STORAGE_WRITE, true),
+        BufferUse::Write | BufferUse::Start => (shaders, A::SHADER_STORAGE_WRITE, true),
         BufferUse::Modify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true),
         BufferUse::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, false),
         BufferUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true),

@@ -12,6 +12,14 @@ use crate::vulkan::{ImageInfo, SamplerKind};
 /// Words of the buffer: the most that a texel has.
 const WORDS: usize = 4;
 
+/// What the names of such resources begin with.
+const NOTHING: &str = "nothing.";
+
+/// Whether a resource is one that nobody is meant to write.
+pub(super) fn stands_for_nothing(name: &str) -> bool {
+    name.starts_with(NOTHING)
+}
+
 impl Graph<'_> {
     /// A resource that nobody writes, in place of what `binding` would read. Passes that share it do not depend on each other.
     pub(super) fn nothing(&mut self, binding: &Binding) -> Access {
@@ -35,17 +43,17 @@ impl Graph<'_> {
     }
 
     fn no_buffer(&mut self) -> BufferRef<u32> {
-        let name = "nothing.words";
-        match self.named(name) {
+        let name = format!("{NOTHING}words");
+        match self.named(&name) {
             Some(id) => BufferRef { id, count: WORDS, element: PhantomData },
-            None => self.buffer(name, WORDS),
+            None => self.buffer(&name, WORDS),
         }
     }
 
     fn no_image(&mut self, dim: ImageDim, integers: bool) -> ImageRef {
         let format = if integers { vk::Format::R32_UINT } else { vk::Format::R32_SFLOAT };
         let info = ImageInfo { format, extent: [1; 3], mips: 1, layers: 1, volume: dim == ImageDim::D3 };
-        let name = format!("nothing.{dim:?}.{format:?}").to_lowercase();
+        let name = format!("{NOTHING}{dim:?}.{format:?}").to_lowercase();
         match self.named(&name) {
             Some(id) => ImageRef { id, mips: (0, 1), info },
             None => self.image_with(&name, info),

@@ -152,7 +152,11 @@ impl Pass {
         if let Some((state, targets)) = &self.raster {
             state.hash(hasher);
             targets.extent.hash(hasher);
-            format!("{:?} {:?} {:?}", targets.colors, targets.depth, targets.stencil).hash(hasher);
+            // Which images they are, the accesses say.
+            let colors: Vec<_> = targets.colors.iter().map(|color| color.as_ref().map(|(_, clear)| clear)).collect();
+            let depth = targets.depth.as_ref().map(|(_, clear)| clear);
+            let stencil = targets.stencil.as_ref().map(|(_, clear)| clear);
+            format!("{colors:?} {depth:?} {stencil:?}").hash(hasher);
         }
     }
 

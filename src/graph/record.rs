@@ -71,6 +71,13 @@ impl Graph<'_> {
         self.store.recorder.fill(&self.store.markers, u64::from(slot) * 4, 4, 1);
     }
 
+    pub(super) fn holds_depth(&self, id: usize) -> bool {
+        match &self.resources[id].body {
+            Body::Image(info) => info.aspect() != vk::ImageAspectFlags::COLOR,
+            _ => false,
+        }
+    }
+
     fn images_of(&self, index: usize) -> HashMap<usize, Arc<Image>> {
         let ids = self.passes[index].accesses().filter_map(|access| match access {
             Access::Image { image, .. } => Some(*image),
@@ -84,11 +91,7 @@ impl Graph<'_> {
         let mut barriers = Barriers::default();
         let pass = &self.passes[index];
         let stages = pass.program.map_or(vk::PipelineStageFlags2::ALL_TRANSFER, pipeline_stages);
-        let holds_depth = |id: usize| match &self.resources[id].body {
-            Body::Image(info) => info.aspect() != vk::ImageAspectFlags::COLOR,
-            _ => false,
-        };
-        for (resource, mips, need) in merged_needs(pass, stages, holds_depth) {
+        for (resource, mips, need) in merged_needs(pass, stages, |id| self.holds_depth(id)) {
             let body = &self.resources[resource];
             match &body.body {
                 Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}

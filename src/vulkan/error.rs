@@ -72,6 +72,9 @@ pub enum VulkanError {
         /// What the device allows.
         limit: String,
     },
+    /// A frame is declared so that it cannot be meant: a fault of the program.
+    #[error("the frame is declared wrongly: {0}; that is a fault of the program, report it")]
+    Declaration(String),
     /// A shader of the folder that `IRRADIA_SHADERS` names, in a debug build, cannot be used.
     #[error("{0}")]
     Shader(String),

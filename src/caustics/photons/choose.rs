@@ -138,8 +138,8 @@ fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count
         levels: made.levels.clone(),
         pyramid: made.pyramid.texels(WORDS),
         choice: made.choice.texels(WORDS),
-        marks: marks.write(),
-        square_counts: square_counts.write(),
+        marks: marks.start(),
+        square_counts: square_counts.start(),
         push: MarkPush { level_count },
     };
     graph.pass("caustics/photons/choose/mark", pass).threads_indirect(made.choice, 0);
@@ -147,14 +147,14 @@ fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count
     let pass = Number {
         choice: made.choice.texels(WORDS),
         square_counts: square_counts.read(),
-        square_firsts: square_firsts.write(),
+        square_firsts: square_firsts.start(),
     };
     graph.pass("caustics/photons/choose/number", pass).groups([1, 1, 1]);
 
     let pass = List {
         marks: marks.read(),
         square_firsts: square_firsts.read(),
-        blocks: made.blocks.write(),
+        blocks: made.blocks.start(),
         push: ListPush { capacity: most },
     };
     graph

@@ -63,9 +63,9 @@ pub(crate) fn emit(cx: &mut FrameCx<'_, '_>, views: &SpecularViews, choice: &Cho
         tile_views: tile_views.texels(WORDS),
         specular_surface: views.surface.sampled(),
         specular_layer: views.layer.sampled(),
-        arrivals: made.arrivals.write(),
-        surfaces: made.surfaces.write(),
-        arrival_beams: made.beams.write(),
+        arrivals: made.arrivals.start(),
+        surfaces: made.surfaces.start(),
+        arrival_beams: made.beams.start(),
         push: EmitPush { tiles_per_row, radius: cx.frame.data.radius as f32 },
     };
     graph.pass("caustics/photons/trace/emit", pass).threads_indirect(choice.choice, CHOICE_EMIT);
@@ -83,9 +83,9 @@ pub(crate) fn scatter(
         arrivals: arrived.arrivals.texels(RECORDS),
         surfaces: arrived.surfaces.texels(RECORDS),
         arrival_counts: choice.arrival_counts.texels(WORDS),
-        rays: rays.rays.write(),
+        rays: rays.rays.start(),
         arrival_beams: arrived.beams.texels(FLOATS),
-        beams: rays.beams.write(),
+        beams: rays.beams.start(),
         counts: choice.counts.read_write(),
         lobes: Lobes { specular_lobes: 1, transmissive: u32::from(cx.frame.facts.transmissive) },
         first: u32::from(rays.stage == 0),
@@ -97,6 +97,7 @@ pub(crate) fn scatter(
     };
     cx.graph
         .pass(&format!("caustics/photons/trace/scatter.{}", rays.stage), pass)
+        .unordered()
         .count("rays", choice.counts, Choice::count_word(rays.stage))
         .threads_indirect(choice.arrival_counts, STAGE_WORDS * rays.stage);
 }

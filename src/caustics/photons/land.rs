@@ -51,12 +51,12 @@ pub(crate) fn land(
         hits: rays.hits.texels(RECORDS),
         choice: choice.choice.texels(WORDS),
         photons,
-        arrivals: next.arrivals.write(),
-        surfaces: next.surfaces.write(),
+        arrivals: next.arrivals.start(),
+        surfaces: next.surfaces.start(),
         counts: choice.counts.read_write(),
         arrival_counts: choice.arrival_counts.read_write(),
         beams: rays.beams.texels(FLOATS),
-        arrival_beams: next.beams.write(),
+        arrival_beams: next.beams.start(),
         ellipses,
     };
     let geometry = cx.frame.geometry.clone();
@@ -64,6 +64,7 @@ pub(crate) fn land(
         None => graph.pass(&name, Land { geometry, landing, push }),
         Some(scene_rays) => graph.pass(&name, LandTraced { geometry, landing, scene_rays, push }),
     };
-    pass.count("landed so far", choice.counts, Choice::count_word(landed.stage))
+    pass.unordered()
+        .count("landed so far", choice.counts, Choice::count_word(landed.stage))
         .threads_indirect(choice.counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
 }

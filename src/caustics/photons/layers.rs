@@ -43,6 +43,7 @@ pub(super) fn peel(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &Scene
         };
         graph
             .pass(&format!("caustics/photons/lists/layers-append.{number}"), pass)
+            .unordered()
             .count("nodes", lists.node_count, 0)
             .threads([pixel_count, 1, 1]);
     }

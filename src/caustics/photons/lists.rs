@@ -97,12 +97,13 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
         photon_lists: lists.group(),
         pixels: lists.pixels.read_write(),
         node_count: lists.node_count.read_write(),
-        nodes: lists.nodes.write(),
+        nodes: lists.nodes.start(),
         push: lists.drawn(0),
     };
     let list = draw_list(data, Attributes::Depth, &draw_views, is_solid);
     let pass = graph.raster("caustics/photons/lists/draw", solid, state(Attributes::Depth));
-    pass.note("views", u64::from(view_count))
+    pass.unordered()
+        .note("views", u64::from(view_count))
         .note("capacity", lists.nodes.count() as u64)
         .count("nodes", lists.node_count, 0)
         .area(area)
@@ -123,7 +124,7 @@ fn append(graph: &mut Graph<'_>, inputs: &ListInputs<'_>, lists: &SceneLists, vi
     };
     let list = draw_list(data, Attributes::DepthMasked, &draw_views, cut);
     let pass = graph.raster("caustics/photons/lists/draw-masked", masked, state(Attributes::DepthMasked));
-    pass.count("nodes", lists.node_count, 0).area(area).draw(list);
+    pass.unordered().count("nodes", lists.node_count, 0).area(area).draw(list);
 }
 
 /// Which depths are occupied, for the march.

@@ -90,8 +90,8 @@ impl Splat<'_> {
             photons: self.landed.photons.texels(RECORDS),
             ellipses: self.landed.ellipses.texels(vk::Format::R32G32B32A32_SFLOAT),
             counts: self.landed.counts.texels(WORDS),
-            discs: self.discs.write(),
-            places: self.places.write(),
+            discs: self.discs.start(),
+            places: self.places.start(),
             cell_counts: self.cell_counts.read_write(),
             cell_peaks: self.cell_peaks.read_write(),
             state: self.state.read_write(),
@@ -106,6 +106,7 @@ impl Splat<'_> {
         let first = STAGE_WORDS * self.landed.stage;
         graph
             .pass("caustics/photons/splat/project", pass)
+            .unordered()
             .count("photons", self.landed.counts, first + COUNT_WORD)
             .count("dropped", self.state, STATE_DROPPED)
             .threads_indirect(self.landed.counts, first + DISPATCH_WORD);
@@ -126,6 +127,7 @@ impl Splat<'_> {
         };
         graph
             .pass("caustics/photons/splat/touch", pass)
+            .unordered()
             .count("tiles", self.state, TileList::Ordinary.word() + 3)
             .count("crowded tiles", self.state, TileList::Crowded.word() + 3)
             .threads_indirect(self.state, BLOCKS_WORD);

@@ -30,23 +30,25 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         sorted_count: sorted_count.read_write(),
         push: ScanPush { row_count: grid.row_count },
     };
-    graph.pass("caustics/photons/splat/scan", pass).threads_indirect(splat.state, ROWS_WORD);
+    graph
+        .pass("caustics/photons/splat/scan", pass)
+        .unordered()
+        .count("photons in view", sorted_count, 0)
+        .threads_indirect(splat.state, ROWS_WORD);
 
     let pass = Scatter {
         counts: landed.counts.texels(WORDS),
         discs: splat.discs.texels(RECORDS),
         places: splat.places.texels(vk::Format::R32G32_UINT),
         cell_starts: cell_starts.texels(WORDS),
-        sorted_centers: centers.write(),
-        sorted_normals: normals.write(),
-        sorted_irradiances: irradiances.write(),
-        sorted_squeezes: squeezes.write(),
+        sorted_centers: centers.start(),
+        sorted_normals: normals.start(),
+        sorted_irradiances: irradiances.start(),
+        sorted_squeezes: squeezes.start(),
         push: ScatterPush { stage: landed.stage as u32, tolerance: splat.tolerance },
     };
-    graph
-        .pass("caustics/photons/splat/sort", pass)
-        .count("photons in view", sorted_count, 0)
-        .threads_indirect(landed.counts, STAGE_WORDS * landed.stage + DISPATCH_WORD);
+    let word = STAGE_WORDS * landed.stage + DISPATCH_WORD;
+    graph.pass("caustics/photons/splat/sort", pass).threads_indirect(landed.counts, word);
 
     let gather = |sums: ReadWriteBuffer<u32>, list: TileList, range: [i32; 2]| Gather {
         splat: splat.group(list),
@@ -67,8 +69,6 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         },
     };
     let list = TileList::Ordinary;
-    // The order in which rows of cells take their places in the sorted list differs from run to run: no pass may make `scan` run again after
-    // `sort` has, as one that changed what `scan` leaves would.
     let pass = gather(ReadWriteBuffer::absent(), list, [0, i32::MAX]);
     graph.pass(&list.pass_name("gather"), pass).threads_indirect(splat.state, list.word());
     if splat.may_crowd {

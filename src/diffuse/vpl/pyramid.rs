@@ -71,7 +71,7 @@ pub(crate) fn pyramid(
             normal_threshold,
         },
     };
-    graph.pass("diffuse/vpl/regions/squares-2", pass).pixels(size.map(|side| side.div_ceil(2)));
+    graph.pass("diffuse/vpl/regions/squares-2", pass).unordered().pixels(size.map(|side| side.div_ceil(2)));
     for level in 2..level_count {
         let pass = LargerRegions {
             surface: buffer.group.clone(),
@@ -92,7 +92,7 @@ pub(crate) fn pyramid(
         };
         // Those that the image cuts off too: their quarters may be valid.
         let regions = size.map(|side| (side >> (level - 1)).div_ceil(2));
-        graph.pass(&format!("diffuse/vpl/regions/squares-{}", 1 << level), pass).pixels(regions);
+        graph.pass(&format!("diffuse/vpl/regions/squares-{}", 1 << level), pass).unordered().pixels(regions);
     }
     Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
 }
