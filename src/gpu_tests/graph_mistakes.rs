@@ -150,3 +150,31 @@ fn a_slot_more_makes_nothing_else_again() {
         again.iter().filter(|name| name.starts_with("light-views") || name.contains("vpls")).collect();
     assert!(lights.is_empty(), "{lights:?} ran again");
 }
+
+/// Under two patterns that fill what passes say they write whole, no word of either is left.
+#[test]
+fn what_is_said_to_be_written_whole_is() {
+    let session = Session::open();
+    let hybrid = |changes: &[(&str, &str)]| {
+        let mut settings = Settings::new(Technique::Hybrid, Preset::Draft);
+        for (key, value) in
+            [("photons.max", "700"), ("vpl.count", "64"), ("lights.resolution", "64")].iter().chain(changes)
+        {
+            settings.set(key, value).expect("within its range");
+        }
+        settings
+    };
+    let frames = [
+        ("ring", hybrid(&[("photons.downscale", "2"), ("vpl.bounces", "2"), ("vpl.visibility", "traced")])),
+        ("ring", hybrid(&[("photons.splat", "tiles"), ("vpl.visibility", "ism"), ("photons.trace", "march")])),
+        ("ring", hybrid(&[("photons.splat", "discs"), ("photons.trace", "lines"), ("vpl.shading", "stencil")])),
+        ("textured", Settings::new(Technique::Rsm, Preset::Draft)),
+        ("lights", hybrid(&[("vpl.shading", "pixels")])),
+    ];
+    for (name, settings) in frames {
+        let scene = builtin(name);
+        let request = request([45, 34], scene.camera_view(None).expect("a camera"), &Slot::ALL);
+        let unwritten = session.renderer(&settings).unwritten(&scene, &request).expect("a frame");
+        assert!(unwritten.is_empty(), "{name}: {unwritten:#?}");
+    }
+}

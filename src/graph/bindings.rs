@@ -74,9 +74,9 @@ impl ImageRef {
         ReadWriteImage(Some(self.access(ImageUse::StorageModify)))
     }
 
-    /// Every texel is written before it is read; what was there before does not matter.
-    pub(crate) fn write_then_read(self) -> ReadWriteImage {
-        ReadWriteImage(Some(self.access(ImageUse::StorageWrite)))
+    /// Some texels are written, before they are read; what the others hold is undefined, and nobody may care.
+    pub(crate) fn start_then_read(self) -> ReadWriteImage {
+        ReadWriteImage(Some(self.access(ImageUse::StorageStart)))
     }
 
     pub(super) fn access(self, usage: ImageUse) -> Access {

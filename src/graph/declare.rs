@@ -12,7 +12,7 @@ use super::demand::{Place, Version};
 use super::dependence::Dependence;
 use super::key::hash_of;
 use super::pass::{ClearColor, Pass, Work};
-use super::resource::{Body, ReadBack, Resource};
+use super::resource::{Body, Proof, ReadBack, Resource};
 use super::store::Store;
 use crate::vulkan::{Buffer, Image, ImageInfo};
 
@@ -28,6 +28,8 @@ pub(crate) struct Graph<'s> {
     pub(super) watcher: Option<Watcher>,
     /// Whether what earlier graphs on the same store left may be read.
     pub(super) goes_on: bool,
+    /// Held while it is proved what passes write.
+    pub(super) proof: Option<Proof>,
     /// The first mistake that the frame was declared with, as a sentence.
     pub(super) mistake: Option<String>,
 }
@@ -66,6 +68,7 @@ impl<'s> Graph<'s> {
             growing: Vec::new(),
             watcher: None,
             goes_on: false,
+            proof: None,
             mistake: None,
         }
     }
@@ -335,6 +338,12 @@ impl<'s> Graph<'s> {
     }
 
     fn note_usage(&mut self, access: &Access, piece: &str) {
+        if self.proof.is_some() {
+            let (Access::Image { image: id, .. } | Access::Buffer { buffer: id, .. }) = access;
+            let resource = &mut self.resources[*id];
+            resource.buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+            resource.image_usage |= vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+        }
         match access {
             Access::Image { image, usage, .. } => {
                 let resource = &mut self.resources[*image];

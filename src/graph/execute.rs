@@ -22,6 +22,9 @@ pub(crate) struct Executed {
     /// Buffers that were too small. What was made of them is wrong; the next frame gives them enough.
     pub(crate) outgrown: Vec<Outgrown>,
     read_backs: Vec<Vec<u8>>,
+    /// What passes left in places that they say they write whole, if that is to be proved.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests look at it"))]
+    pub(super) left: Vec<(String, Vec<u8>)>,
 }
 
 impl Executed {
@@ -137,7 +140,7 @@ impl Graph<'_> {
         self.store.retain(|name| declared.contains(&name));
         let read_backs = self.copy_read_backs(&read_back);
         let outgrown = self.note_growth(&read_backs)?;
-        Ok(Executed { passes, gpu_ms, pipeline_ms, outgrown, read_backs })
+        Ok(Executed { passes, gpu_ms, pipeline_ms, outgrown, read_backs, left: self.take_wholes() })
     }
 
     /// Remembers how much the buffers that were too small need, and a little more, so that not every change outgrows them again.

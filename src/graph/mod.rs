@@ -28,6 +28,7 @@ mod needs;
 mod nothing;
 mod pass;
 mod piece;
+pub(crate) mod proof;
 mod read_back;
 mod record;
 mod report;

@@ -36,6 +36,7 @@ impl Graph<'_> {
             recorder.full_barrier();
         }
         recorder.barriers(&barriers);
+        self.fill_wholes(index);
         if statistics {
             recorder.begin_statistics(&self.store.queries, slot);
         }
@@ -51,7 +52,7 @@ impl Graph<'_> {
         }
         self.record_marker(pass, slot);
         recorder.end_label();
-        Ok(())
+        self.keep_wholes(index)
     }
 
     /// Notes on the device that the pass has finished. The next pass does not wait for this.

@@ -32,6 +32,18 @@ pub(super) struct Resource {
     pub(super) piece: Option<String>,
 }
 
+/// What a pass left in a place that it says it writes whole.
+pub(super) struct Left {
+    pub(super) what: String,
+    pub(super) buffer: Buffer,
+}
+
+/// A frame's places filled with a pattern before each pass that writes them whole.
+pub(super) struct Proof {
+    pub(super) pattern: u32,
+    pub(super) left: Vec<Left>,
+}
+
 /// The number of a read-back, among all that a frame asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ReadBack(pub(super) usize);

@@ -34,6 +34,22 @@ impl Renderer {
         self.first_at_fault(scene, request, means.as_deref())
     }
 
+    /// The passes of the frame that leave words of what they say they write whole.
+    #[cfg(test)]
+    pub(crate) fn unwritten(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<(String, usize)>, Error> {
+        let means = self.estimate(scene, request, &mut crate::graph::FrameTimings::default())?;
+        let traced = self.prepare(scene, request)?;
+        let data = self.data.as_ref().expect("prepared above");
+        let (lights, traced) = (&self.lights, traced.as_deref());
+        let prepared = Prepared { scene, data, lights, traced, means: means.as_deref() };
+        let settings = &self.settings;
+        let found = crate::graph::proof::unwritten(&mut self.store, |graph| {
+            let declared = declare(graph, &prepared, settings, request).expect("what the frame declares");
+            want(graph, &declared, request);
+        });
+        Ok(found?)
+    }
+
     fn first_at_fault(
         &mut self,
         scene: &Scene,

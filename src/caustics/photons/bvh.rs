@@ -28,7 +28,7 @@ pub(crate) fn trace(
         scene_rays: scene.clone(),
         rays: rays.rays.texels(vk::Format::R32G32B32A32_UINT),
         counts: counts.texels(vk::Format::R32_UINT),
-        hits: rays.hits.write(),
+        hits: rays.hits.start(),
         push: TracePush { shift: shift(data, traced), stage: rays.stage as u32 },
     };
     let name = format!("caustics/photons/trace/bvh.{}", rays.stage);

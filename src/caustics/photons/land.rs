@@ -30,8 +30,8 @@ pub(crate) fn land(
     let (graph, data) = (&mut *cx.graph, cx.frame.data);
     let name = format!("caustics/photons/trace/land.{}", rays.stage);
     // The first stage starts the list, the others add to it.
-    let photons = if rays.stage == 0 { landed.photons.write() } else { landed.photons.modify() };
-    let ellipses = if rays.stage == 0 { landed.ellipses.write() } else { landed.ellipses.modify() };
+    let photons = if rays.stage == 0 { landed.photons.start() } else { landed.photons.modify() };
+    let ellipses = if rays.stage == 0 { landed.ellipses.start() } else { landed.ellipses.modify() };
     let push = LandingStage {
         shift: scene.map_or([0.0; 3], |(traced, _)| shift(data, traced)),
         stage: rays.stage as u32,

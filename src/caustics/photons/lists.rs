@@ -136,7 +136,7 @@ fn occupy(graph: &mut Graph<'_>, lists: &SceneLists) {
     };
     let finest = Occupancy {
         photon_lists: lists.group(),
-        blocks: blocks.slices.write(),
+        blocks: blocks.slices.start(),
         push: OccupancyPush { resolution, view_count },
     };
     graph.pass("caustics/photons/lists/blocks.1", finest).threads(threads(1));

@@ -19,7 +19,7 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         photon_lists: lists.group(),
         blocks: lists.blocks.slices.texels(words),
         counts: counts.read(),
-        hits: rays.hits.write(),
+        hits: rays.hits.start(),
         work: work.read_write(),
         push: MarchPush {
             resolution: lists.resolution,

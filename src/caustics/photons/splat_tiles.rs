@@ -115,9 +115,9 @@ impl Splat<'_> {
             splat: self.group(TileList::Ordinary),
             cell_peaks: self.cell_peaks.texels(WORDS),
             cell_counts: self.cell_counts.texels(WORDS),
-            tile_peaks: self.tile_peaks.write(),
-            tiles: self.tile_list.write(),
-            crowded: self.crowded.write(),
+            tile_peaks: self.tile_peaks.start(),
+            tiles: self.tile_list.start(),
+            crowded: self.crowded.start(),
             state: self.state.read_write(),
             push: TouchPush {
                 tile_count: grid.tiles().map(u32::cast_signed),

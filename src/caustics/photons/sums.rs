@@ -45,7 +45,7 @@ impl Splat<'_> {
     pub(super) fn clear_sums(&self, graph: &mut Graph<'_>, list: TileList, range: TileRange) {
         let pass = Clear {
             splat: self.group(list),
-            sums: range.sums.write(),
+            sums: range.sums.start(),
             push: ClearPush { list: list.word() as u32, range: range.ends },
         };
         graph.pass(&range.pass_name(list, "clear-sums"), pass).threads_indirect(self.state, list.word());

@@ -45,7 +45,7 @@ pub(super) fn with_bounces(
     let all: u32 = counts.iter().sum();
     let vpls = graph.buffer::<[f32; 4]>("vpl.all", 2 * all as usize);
     let texel_count = 2 * counts[0];
-    let pass = Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.write(), push: CopyPush { texel_count } };
+    let pass = Copy { first_bounce: first_bounce.texels(FLOATS), vpls: vpls.start(), push: CopyPush { texel_count } };
     graph.pass("diffuse/vpl/paths/copy", pass).threads([texel_count, 1, 1]);
 
     let mut parents = 0;

@@ -32,7 +32,7 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
     let pass = BlockFlux {
         tiles: tiles.read(),
         light_views: lights.group.clone(),
-        blocks: blocks.write(),
+        blocks: blocks.start(),
         dropped_texels: dropped.read_write(),
         push: BlockFluxPush { tile_count },
     };
@@ -45,7 +45,7 @@ pub(super) fn sample(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> BufferRe
     let pass = BlockSums {
         light_views: lights.group.clone(),
         blocks: blocks.sampled(),
-        sums: sums.write_then_read(),
+        sums: sums.start_then_read(),
         view_fluxes: view_fluxes.write(),
     };
     graph.pass("diffuse/vpl/vpls/block-sums", pass).groups([view_count, 1, 1]);
