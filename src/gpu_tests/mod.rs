@@ -17,6 +17,7 @@ mod graph_mistakes;
 mod groups;
 mod hybrid;
 mod invariance;
+mod kept;
 mod layouts;
 mod leaks;
 mod light_share;

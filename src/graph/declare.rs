@@ -12,7 +12,7 @@ use super::demand::{Place, Version};
 use super::dependence::Dependence;
 use super::key::hash_of;
 use super::pass::{ClearColor, Pass, Work};
-use super::resource::{Body, Proof, ReadBack, Resource};
+use super::resource::{Body, KeptUse, Proof, ReadBack, Resource};
 use super::store::Store;
 use crate::vulkan::{Buffer, Image, ImageInfo};
 
@@ -28,6 +28,7 @@ pub(crate) struct Graph<'s> {
     pub(super) watcher: Option<Watcher>,
     /// Whether what earlier graphs on the same store left may be read.
     pub(super) goes_on: bool,
+    pub(super) kept: Vec<KeptUse>,
     /// Held while it is proved what passes write.
     pub(super) proof: Option<Proof>,
     /// The first mistake that the frame was declared with, as a sentence.
@@ -68,6 +69,7 @@ impl<'s> Graph<'s> {
             growing: Vec::new(),
             watcher: None,
             goes_on: false,
+            kept: Vec::new(),
             proof: None,
             mistake: None,
         }

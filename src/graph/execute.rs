@@ -6,8 +6,9 @@ use super::bindings::Access;
 use super::declare::Graph;
 use super::demand::{Needs, Place, Verdict, Version, decide, decide_again};
 use super::piece::lies_in;
+use super::report::PendingCounter;
 use super::resource::{Body, ReadBack};
-use super::store::MAX_PASSES;
+use super::store::{MAX_PASSES, STAMPS, stamp_of_frame};
 use super::timing::{PassTiming, Timing};
 use crate::vulkan::VulkanError;
 
@@ -84,21 +85,29 @@ impl Graph<'_> {
         if let Some(mistake) = self.mistake.take() {
             return Err(VulkanError::Declaration(mistake));
         }
+        let advancing = self.advancing(verdicts);
+        self.swap_histories(&advancing);
         let result = self.execute(verdicts, timing);
-        if result.is_err() {
-            // Whatever was recorded may not have run.
-            self.store.forget();
+        match &result {
+            Ok(executed) if executed.outgrown.is_empty() => self.note_ages(&advancing),
+            // The frame is made again.
+            Ok(_) => self.swap_histories(&advancing),
+            Err(_) => {
+                self.swap_histories(&advancing);
+                // Whatever was recorded may not have run.
+                self.store.forget();
+            }
         }
         result
     }
 
     fn execute(&mut self, verdicts: &[Verdict], timing: Timing) -> Result<Executed, VulkanError> {
         self.provide_memory(verdicts)?;
-        let running = verdicts.iter().filter(|verdict| **verdict == Verdict::Run).count();
-        if running as u64 > u64::from(MAX_PASSES) {
+        let running: Vec<usize> = (0..verdicts.len()).filter(|&index| verdicts[index] == Verdict::Run).collect();
+        if running.len() as u64 > u64::from(MAX_PASSES) {
             return Err(VulkanError::TooLarge {
                 what: "the frame".to_owned(),
-                asked: format!("{running} passes"),
+                asked: format!("{} passes", running.len()),
                 limit: MAX_PASSES.to_string(),
             });
         }
@@ -106,41 +115,97 @@ impl Graph<'_> {
         self.store.queries.reset();
         self.store.markers.write(0, &vec![0; MAX_PASSES as usize * 4]);
         let _ = self.store.pipelines.take_spent();
-        self.store.recorder.begin(u32::try_from(running).unwrap_or(MAX_PASSES))?;
         let mut counters = Vec::new();
-        self.store.recorder.full_barrier();
-        self.store.recorder.timestamp(&self.store.queries, 0);
-        self.store.recorder.full_barrier();
-        let mut order = Vec::new();
-        for (index, verdict) in verdicts.iter().enumerate() {
-            if *verdict == Verdict::Run {
-                let slot = u32::try_from(order.len()).unwrap_or(0);
-                order.push(index);
-                self.record_pass(index, slot, timing, &mut counters)?;
+        let mut submissions = Vec::new();
+        // States change once it is known that every buffer was large enough.
+        let waits = self.first_change_of_state(verdicts).filter(|_| !self.growing.is_empty());
+        let parts = match waits {
+            Some(first) => {
+                self.check_growth_before(first, verdicts)?;
+                let (before, after) = running.split_at(running.partition_point(|&index| index < first));
+                vec![before, after]
+            }
+            None => vec![&running[..]],
+        };
+        let mut outgrown = Vec::new();
+        let mut read_backs = Vec::new();
+        for (number, part) in parts.iter().enumerate() {
+            let first_slot = if number == 0 { 0 } else { parts[0].len() };
+            submissions.push(self.submit(part, first_slot, timing, (number, &read_back), &mut counters)?);
+            read_backs = self.copy_read_backs(&read_back);
+            outgrown = self.note_growth(&read_backs)?;
+            if !outgrown.is_empty() {
+                break;
             }
         }
-        self.store.recorder.full_barrier();
-        self.store.recorder.timestamp(&self.store.queries, 1);
-        self.store.recorder.full_barrier();
-        self.record_read_backs(&read_back);
         let pipeline_ms = self.store.pipelines.take_spent().as_secs_f64() * 1e3;
-        if let Err(error) = self.store.recorder.finish() {
-            return Err(error.after_pass(self.last_finished(&order).as_deref()));
-        }
-        for &index in &order {
-            self.note_contents(index);
-        }
-        let passes = self.report(verdicts, &order, timing, &counters)?;
-        let stamps = self.store.queries.read_timestamps(2)?;
-        let gpu_ms = match stamps[..] {
-            [Some(start), Some(end)] => self.store.queries.milliseconds(start, end),
-            _ => 0.0,
-        };
+        let passes = self.report(verdicts, &running, timing, &counters)?;
+        let gpu_ms = self.gpu_ms(submissions.len())?;
         let declared: Vec<&str> = self.resources.iter().map(|resource| resource.name.as_str()).collect();
         self.store.retain(|name| declared.contains(&name));
-        let read_backs = self.copy_read_backs(&read_back);
-        let outgrown = self.note_growth(&read_backs)?;
         Ok(Executed { passes, gpu_ms, pipeline_ms, outgrown, read_backs, left: self.take_wholes() })
+    }
+
+    /// Whether growing buffers are counted by passes before the one that first changes a state.
+    fn check_growth_before(&self, first: usize, verdicts: &[Verdict]) -> Result<(), VulkanError> {
+        for growing in &self.growing {
+            let (counts, _) = self.read_backs[growing.needed.0];
+            let counts_too_late = |index: &usize| {
+                verdicts[*index] == Verdict::Run
+                    && self.passes[*index].needs.writes.iter().any(|write| write.place.0 == counts)
+            };
+            if let Some(late) = (first..self.passes.len()).find(counts_too_late) {
+                let [late, first] = [late, first].map(|index| self.passes[index].full_name());
+                let name = &growing.name;
+                let sentence = format!("{late} counts what {name} must hold after {first} has changed a state");
+                return Err(VulkanError::Declaration(sentence));
+            }
+        }
+        Ok(())
+    }
+
+    /// Records passes and waits for them. `first_slot`: how many passes of the frame ran before.
+    fn submit(
+        &mut self,
+        part: &[usize],
+        first_slot: usize,
+        timing: Timing,
+        (number, read_back): (usize, &[(u64, u64)]),
+        counters: &mut Vec<PendingCounter>,
+    ) -> Result<(), VulkanError> {
+        self.store.recorder.begin(u32::try_from(part.len()).unwrap_or(MAX_PASSES))?;
+        let stamp = |graph: &Self, place: u32| {
+            graph.store.recorder.full_barrier();
+            graph.store.recorder.timestamp(&graph.store.queries, stamp_of_frame(number) + place);
+            graph.store.recorder.full_barrier();
+        };
+        stamp(self, 0);
+        for (slot, &index) in part.iter().enumerate() {
+            let slot = u32::try_from(first_slot + slot).unwrap_or(0);
+            self.record_pass(index, slot, timing, counters)?;
+        }
+        stamp(self, 1);
+        self.record_read_backs(read_back);
+        if let Err(error) = self.store.recorder.finish() {
+            return Err(error.after_pass(self.last_finished(part, first_slot).as_deref()));
+        }
+        for &index in part {
+            self.note_contents(index);
+        }
+        Ok(())
+    }
+
+    /// Between the stamps around each of so many submissions.
+    fn gpu_ms(&self, submissions: usize) -> Result<f64, VulkanError> {
+        let stamps = self.store.queries.read_timestamps(STAMPS)?;
+        let of = |number: usize| {
+            let first = stamp_of_frame(number) as usize;
+            match stamps[first..first + 2] {
+                [Some(start), Some(end)] => self.store.queries.milliseconds(start, end),
+                _ => 0.0,
+            }
+        };
+        Ok((0..submissions).map(of).sum())
     }
 
     /// Remembers how much the buffers that were too small need, and a little more, so that not every change outgrows them again.
@@ -190,11 +255,11 @@ impl Graph<'_> {
         Ok(())
     }
 
-    /// The name of the last pass whose marker was written.
-    fn last_finished(&self, order: &[usize]) -> Option<String> {
+    /// The name of the last pass of a submission whose marker was written.
+    fn last_finished(&self, part: &[usize], first_slot: usize) -> Option<String> {
         let words: &[u32] = bytemuck::try_cast_slice(self.store.markers.mapped()?).ok()?;
-        let last = words.iter().take(order.len()).rposition(|word| *word != 0)?;
-        Some(self.passes[order[last]].full_name())
+        let last = words.iter().skip(first_slot).take(part.len()).rposition(|word| *word != 0)?;
+        Some(self.passes[part[last]].full_name())
     }
 
     /// Remembers what the outputs of a pass that ran now hold.

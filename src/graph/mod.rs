@@ -22,6 +22,8 @@ pub(crate) mod demand;
 mod dependence;
 mod describe;
 mod execute;
+#[cfg_attr(not(test), allow(dead_code, reason = "tests keep something; the methods that do so come later"))]
+pub(crate) mod kept;
 mod key;
 mod mistakes;
 mod needs;

@@ -12,6 +12,7 @@ use super::needs::merged_needs;
 use super::pass::{DrawList, Draws, Pass, Work};
 use super::report::PendingCounter;
 use super::resource::Body;
+use super::store::stamp_of_pass;
 use super::timing::Timing;
 use crate::vulkan::{Barriers, Buffer, Image, ImageBarrier, Pipeline, Scope, VulkanError, pipeline_stages};
 
@@ -32,7 +33,7 @@ impl Graph<'_> {
         let statistics = serialised && pass.raster.is_some();
         if serialised {
             recorder.full_barrier();
-            recorder.timestamp(&self.store.queries, 2 + 2 * slot);
+            recorder.timestamp(&self.store.queries, stamp_of_pass(slot));
             recorder.full_barrier();
         }
         recorder.barriers(&barriers);
@@ -46,7 +47,7 @@ impl Graph<'_> {
         }
         if serialised {
             recorder.full_barrier();
-            recorder.timestamp(&self.store.queries, 3 + 2 * slot);
+            recorder.timestamp(&self.store.queries, stamp_of_pass(slot) + 1);
             recorder.full_barrier();
             self.record_counters(index, counters);
         }

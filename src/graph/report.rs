@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::declare::Graph;
 use super::demand::Verdict;
 use super::pass::Work;
-use super::store::MAX_COUNTERS;
+use super::store::{MAX_COUNTERS, stamp_of_pass};
 use super::timing::{PassTiming, Timing};
 use crate::vulkan::VulkanError;
 
@@ -52,7 +52,9 @@ impl Graph<'_> {
         counters: &[PendingCounter],
     ) -> Result<Vec<PassTiming>, VulkanError> {
         let stamps = match timing {
-            Timing::Passes => self.store.queries.read_timestamps(2 + 2 * u32::try_from(order.len()).unwrap_or(0))?,
+            Timing::Passes => {
+                self.store.queries.read_timestamps(stamp_of_pass(u32::try_from(order.len()).unwrap_or(0)))?
+            }
             Timing::Frame => Vec::new(),
         };
         let words: &[u32] =
@@ -65,7 +67,8 @@ impl Graph<'_> {
             let mut ms = None;
             if let Some(&slot) = slots.get(&index) {
                 work.clone_from(&pass.notes);
-                if let [Some(Some(start)), Some(Some(end))] = [stamps.get(2 + 2 * slot), stamps.get(3 + 2 * slot)] {
+                let first = stamp_of_pass(u32::try_from(slot).unwrap_or(0)) as usize;
+                if let [Some(Some(start)), Some(Some(end))] = [stamps.get(first), stamps.get(first + 1)] {
                     ms = Some(self.store.queries.milliseconds(*start, *end));
                 }
                 if let (Work::Dispatch(groups), Some(program)) = (&pass.work, pass.program) {

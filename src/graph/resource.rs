@@ -44,6 +44,17 @@ pub(super) struct Proof {
     pub(super) left: Vec<Left>,
 }
 
+/// Something that is kept over frames, as a frame declares it (super::kept).
+pub(super) struct KeptUse {
+    pub(super) name: String,
+    /// What passes write of it.
+    pub(super) resource: usize,
+    /// Of a history, the names of its two copies.
+    pub(super) swap: Option<[String; 2]>,
+    pub(super) depends: u64,
+    pub(super) age: u32,
+}
+
 /// The number of a read-back, among all that a frame asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ReadBack(pub(super) usize);

@@ -44,10 +44,22 @@ pub(crate) struct Store {
     pub(super) read_back: Option<Buffer>,
     /// Elements that growing buffers need, by name.
     pub(super) grown: HashMap<String, usize>,
+    /// What outlasts frames, by name.
+    pub(super) kept: HashMap<String, Kept>,
+}
+
+/// Something that outlasts frames (super::kept).
+pub(super) struct Kept {
+    /// Names all that it is about.
+    pub(super) depends: u64,
+    /// Frames that made it what it is.
+    pub(super) age: u32,
 }
 
 /// Passes of a frame for which there are timestamps, markers and counters: with rays, a gather takes 96 of at most 196,323 VPLs a pass.
 pub(super) const MAX_PASSES: u32 = 4096;
+/// Timestamps around the submissions of a frame, of which there are two at most; those around passes follow.
+pub(super) const STAMPS: u32 = 4;
 pub(super) const MAX_COUNTERS: u64 = 4 * MAX_PASSES as u64;
 
 impl Store {
@@ -60,13 +72,14 @@ impl Store {
             device: device.clone(),
             pipelines: pipelines.clone(),
             recorder: Recorder::new(device)?,
-            queries: Queries::new(device, 2 * MAX_PASSES + 2)?,
+            queries: Queries::new(device, stamp_of_pass(MAX_PASSES))?,
             images: HashMap::new(),
             buffers: HashMap::new(),
             markers: host_visible("crash markers", u64::from(MAX_PASSES) * 4)?,
             counters: host_visible("work counters", MAX_COUNTERS * 4)?,
             read_back: None,
             grown: HashMap::new(),
+            kept: HashMap::new(),
         })
     }
 
@@ -91,6 +104,34 @@ impl Store {
         for buffer in self.buffers.values_mut() {
             buffer.key = None;
         }
+    }
+
+    /// Lets everything that outlasts frames start anew.
+    pub(crate) fn reset_history(&mut self) {
+        for name in std::mem::take(&mut self.kept).into_keys() {
+            for name in names_of(&name) {
+                if let Some(image) = self.images.get_mut(&name) {
+                    image.keys.fill(None);
+                }
+                if let Some(buffer) = self.buffers.get_mut(&name) {
+                    buffer.key = None;
+                }
+            }
+        }
+    }
+
+    /// Lets the memory behind two names change places.
+    pub(super) fn swap(&mut self, one: &str, other: &str) {
+        if let [Some(a), Some(b)] = self.images.get_disjoint_mut([one, other]) {
+            std::mem::swap(a, b);
+        }
+        if let [Some(a), Some(b)] = self.buffers.get_disjoint_mut([one, other]) {
+            std::mem::swap(a, b);
+        }
+    }
+
+    pub(super) fn note_kept(&mut self, name: &str, depends: u64, age: u32) {
+        self.kept.insert(name.to_owned(), Kept { depends, age });
     }
 
     /// Forgets all contents and how they were last used: after a frame that failed, what was recorded may not have run.
@@ -190,8 +231,10 @@ impl Store {
         Ok(())
     }
 
-    /// Returns the memory of names that a frame no longer declares.
-    pub(super) fn retain(&mut self, keep: impl Fn(&str) -> bool) {
+    /// Returns the memory of names that a frame no longer declares, but for what outlasts frames.
+    pub(super) fn retain(&mut self, declares: impl Fn(&str) -> bool) {
+        let kept: Vec<String> = self.kept.keys().flat_map(|name| names_of(name)).collect();
+        let keep = |name: &str| declares(name) || kept.iter().any(|known| known == name);
         self.grown.retain(|name, _| keep(name));
         self.images.retain(|name, _| keep(name));
         self.buffers.retain(|name, _| keep(name));
@@ -208,4 +251,19 @@ impl Store {
         }
         bytes
     }
+}
+
+/// What the memory of something kept may be called: a history has two copies.
+fn names_of(kept: &str) -> [String; 3] {
+    [kept.to_owned(), format!("{kept}.last"), format!("{kept}.next")]
+}
+
+/// The timestamp before submission number `number`; the one after it follows.
+pub(super) fn stamp_of_frame(number: usize) -> u32 {
+    2 * u32::try_from(number).unwrap_or(0)
+}
+
+/// The timestamp before the pass in slot `slot`; the one after it follows.
+pub(super) fn stamp_of_pass(slot: u32) -> u32 {
+    STAMPS + 2 * slot
 }

@@ -73,6 +73,11 @@ impl Renderer {
         }
     }
 
+    /// Lets all that methods keep over frames start anew, as before the first frame. [`Renderer::invalidate`] leaves it.
+    pub fn reset_history(&mut self) {
+        self.store.reset_history();
+    }
+
     /// Makes a frame of the scene as it is now. If some buffer could not know how much it had to hold and was too small, the frame is made again
     /// with a larger one.
     ///
