@@ -117,6 +117,7 @@ impl MaterialTextureSets {
             let what = SubresourceView {
                 dim: ImageDim::D2Array,
                 mips: 0..image.info.mips,
+                layers: 0..image.info.layers,
                 aspect: vk::ImageAspectFlags::COLOR,
                 format: image.info.format,
             };

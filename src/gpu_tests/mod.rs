@@ -14,6 +14,7 @@ mod flux;
 mod gather;
 mod graph;
 mod graph_mistakes;
+mod graph_places;
 mod groups;
 mod hybrid;
 mod invariance;

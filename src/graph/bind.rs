@@ -53,15 +53,15 @@ impl Graph<'_> {
 
     fn descriptor(&self, access: &Access, kind: BindingKind) -> Result<Descriptor, VulkanError> {
         Ok(match access {
-            Access::Image { image, mips, usage } => {
+            Access::Image { image, part, usage } => {
                 let image = self.memory_of_image(*image);
                 let (BindingKind::SampledImage(dim) | BindingKind::StorageImage(dim)) = kind else {
                     unreachable!("typed by the generated bindings")
                 };
                 let aspect = image.info.aspect() & !vk::ImageAspectFlags::STENCIL;
                 let aspect = if aspect.is_empty() { image.info.aspect() } else { aspect };
-                let view =
-                    image.view(&SubresourceView { dim, mips: mips.clone(), aspect, format: image.info.format })?;
+                let (mips, layers, format) = (part.mips.clone(), part.layers.clone(), image.info.format);
+                let view = image.view(&SubresourceView { dim, mips, layers, aspect, format })?;
                 match usage {
                     ImageUse::Sampled(sampler) => {
                         let sampler = self.store.pipelines.sampler(*sampler)?;
@@ -82,13 +82,14 @@ impl Graph<'_> {
         let view = |access: &Access,
                     aspect: vk::ImageAspectFlags|
          -> Result<(vk::ImageView, vk::Format, vk::ImageLayout), VulkanError> {
-            let Access::Image { image, mips, usage } = access else { unreachable!("attachments are images") };
+            let Access::Image { image, part, usage } = access else { unreachable!("attachments are images") };
             let image = self.memory_of_image(*image);
             // Attachments of an image that holds both depth and stencil share one view of both.
             let aspect = if aspect == vk::ImageAspectFlags::COLOR { aspect } else { image.info.aspect() };
             let what = SubresourceView {
                 dim: ImageDim::D2,
-                mips: mips.start..mips.start + 1,
+                mips: part.mips.start..part.mips.start + 1,
+                layers: part.layers.start..part.layers.start + 1,
                 aspect,
                 format: image.info.format,
             };

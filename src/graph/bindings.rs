@@ -24,12 +24,28 @@ pub(crate) trait BindingSet {
 pub(crate) struct ImageRef {
     pub(super) id: usize,
     pub(super) mips: (u32, u32),
+    pub(super) layers: (u32, u32),
     pub(super) info: ImageInfo,
 }
 
 impl ImageRef {
     pub(crate) fn info(&self) -> ImageInfo {
         self.info
+    }
+
+    /// All levels and layers of an image.
+    pub(super) fn whole(id: usize, info: ImageInfo) -> ImageRef {
+        ImageRef { id, mips: (0, info.mips), layers: (0, info.layers), info }
+    }
+
+    /// Only layer `layer`, or face `layer` of a cube: +x, −x, +y, −y, +z, −z.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests draw layers; the methods that do so come later"))]
+    pub(crate) fn layer(self, layer: u32) -> ImageRef {
+        ImageRef { layers: (layer, layer + 1), ..self }
+    }
+
+    pub(super) fn part(self) -> Part {
+        Part { mips: self.mips.0..self.mips.1, layers: self.layers.0..self.layers.1, levels: self.info.mips }
     }
 
     /// Width and height of the first of its mip levels.
@@ -80,7 +96,7 @@ impl ImageRef {
     }
 
     pub(super) fn access(self, usage: ImageUse) -> Access {
-        Access::Image { image: self.id, mips: self.mips.0..self.mips.1, usage }
+        Access::Image { image: self.id, part: self.part(), usage }
     }
 }
 
@@ -153,10 +169,27 @@ impl<T> BufferRef<T> {
     }
 }
 
+/// Some levels of some layers of an image.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Part {
+    pub(super) mips: Range<u32>,
+    pub(super) layers: Range<u32>,
+    /// All levels of the image.
+    pub(super) levels: u32,
+}
+
+impl Part {
+    /// Their numbers, as [`ImageInfo::level_and_layer`] has them.
+    pub(super) fn places(&self) -> impl Iterator<Item = u32> + use<> {
+        let (mips, levels) = (self.mips.clone(), self.levels);
+        self.layers.clone().flat_map(move |layer| mips.clone().map(move |mip| layer * levels + mip))
+    }
+}
+
 /// One use of one resource by one pass.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Access {
-    Image { image: usize, mips: Range<u32>, usage: ImageUse },
+    Image { image: usize, part: Part, usage: ImageUse },
     Buffer { buffer: usize, usage: BufferUse },
 }
 

@@ -74,7 +74,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     pub(crate) fn color(mut self, image: ImageRef, clear: Option<ClearColor>) -> Self {
         let access = image.access(ImageUse::Color { keep: clear.is_none() });
         self.pass.others.push(access.clone());
-        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().extent = image.size();
         self.targets().colors.push(Some((access, clear)));
         self
     }
@@ -94,7 +94,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     pub(crate) fn color_fresh(mut self, image: ImageRef) -> Self {
         let access = image.access(ImageUse::Color { keep: false });
         self.pass.others.push(access.clone());
-        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().extent = image.size();
         self.targets().colors.push(Some((access, None)));
         self
     }
@@ -103,7 +103,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     pub(crate) fn depth_test(mut self, image: ImageRef) -> Self {
         let access = image.access(ImageUse::DepthTest);
         self.pass.others.push(access.clone());
-        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().extent = image.size();
         self.targets().depth = Some((access, None));
         self
     }
@@ -112,7 +112,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
     pub(crate) fn depth(mut self, image: ImageRef, clear: Option<f32>) -> Self {
         let access = image.access(ImageUse::Depth { keep: clear.is_none() });
         self.pass.others.push(access.clone());
-        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().extent = image.size();
         self.targets().depth = Some((access, clear));
         self
     }
@@ -137,7 +137,7 @@ impl<'g, 's> PassBuilder<'g, 's> {
         };
         let access = image.access(usage);
         self.pass.others.push(access.clone());
-        self.targets().extent = [image.info.extent[0], image.info.extent[1]];
+        self.targets().extent = image.size();
         self.targets().stencil = Some((access, clear));
         self
     }

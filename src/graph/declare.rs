@@ -7,7 +7,7 @@ use std::sync::Arc;
 use ash::vk;
 use bytemuck::Pod;
 
-use super::bindings::{Access, BufferRef, BufferUse, ImageRef, ImageUse};
+use super::bindings::{Access, BufferRef, BufferUse, ImageRef, ImageUse, Part};
 use super::demand::{Place, Version};
 use super::dependence::Dependence;
 use super::key::hash_of;
@@ -22,8 +22,8 @@ pub(crate) struct Graph<'s> {
     pub(super) resources: Vec<Resource>,
     pub(super) passes: Vec<Pass>,
     pub(super) wanted: Vec<Version>,
-    /// Images with their mip level; buffers with 0.
-    pub(super) read_backs: Vec<(usize, u32)>,
+    /// Of images, one level of some layers.
+    pub(super) read_backs: Vec<(usize, Option<Part>)>,
     pub(super) growing: Vec<Growing>,
     pub(super) watcher: Option<Watcher>,
     /// Whether what earlier graphs on the same store left may be read.
@@ -115,15 +115,15 @@ impl<'s> Graph<'s> {
 
     /// An image of any shape.
     pub(crate) fn image_with(&mut self, name: &str, info: ImageInfo) -> ImageRef {
-        let left = |mip: u32| self.store.image_key(name, &info, mip).filter(|_| self.goes_on).unwrap_or(NOTHING);
-        let held: Vec<u64> = (0..info.mips).map(left).collect();
-        let id = self.add(name, Body::Image(info), info.mips, |mip| (held[mip as usize], Dependence::NONE));
-        ImageRef { id, mips: (0, info.mips), info }
+        let left = |part: u32| self.store.image_key(name, &info, part).filter(|_| self.goes_on).unwrap_or(NOTHING);
+        let held: Vec<u64> = (0..info.parts()).map(left).collect();
+        let id = self.add(name, Body::Image(info), info.parts(), |part| (held[part as usize], Dependence::NONE));
+        ImageRef::whole(id, info)
     }
 
-    /// Whether a pass has written the first of the image's levels.
+    /// Whether passes have written all of these levels and layers.
     pub(super) fn is_written(&self, image: ImageRef) -> bool {
-        self.resources[image.id].content[image.mips.0 as usize].0 != NOTHING
+        image.part().places().all(|place| self.resources[image.id].content[place as usize].0 != NOTHING)
     }
 
     /// The name that an image was declared by.
@@ -212,14 +212,14 @@ impl<'s> Graph<'s> {
         dependence: Dependence,
     ) -> ImageRef {
         let info = image.info;
-        let id = self.add(name, Body::ExternalImage(image.clone()), info.mips, |_| (key, dependence));
-        ImageRef { id, mips: (0, info.mips), info }
+        let id = self.add(name, Body::ExternalImage(image.clone()), info.parts(), |_| (key, dependence));
+        ImageRef::whole(id, info)
     }
 
     /// Sets every texel of a colour image.
     pub(crate) fn clear_image(&mut self, name: &str, image: ImageRef, value: ClearColor) {
         let bytes = format!("{value:?}").into_bytes();
-        let work = Work::ClearImage { image: image.id, mips: image.mips.0..image.mips.1, value };
+        let work = Work::ClearImage { image: image.id, part: image.part(), value };
         let access = image.access(ImageUse::Clear);
         self.add_pass(Pass::transfer(name, access, bytes, work));
     }
@@ -247,9 +247,8 @@ impl<'s> Graph<'s> {
     /// Asks that the image be made.
     pub(crate) fn want(&mut self, image: ImageRef) {
         let content = &self.resources[image.id].content;
-        self.wanted.extend(
-            (image.mips.0..image.mips.1).map(|mip| Version { place: (image.id, mip), key: content[mip as usize].0 }),
-        );
+        let places = image.part().places();
+        self.wanted.extend(places.map(|place| Version { place: (image.id, place), key: content[place as usize].0 }));
     }
 
     /// Asks that the buffer be made.
@@ -273,13 +272,13 @@ impl<'s> Graph<'s> {
             | vk::BufferUsageFlags::TRANSFER_DST;
     }
 
-    /// Asks that the image be made and its first mip level copied to the host; `image.mip(n)` copies level n. Returns its
-    /// number among the read-backs.
+    /// Asks that the image be made and the first of its mip levels copied to the host, its layers after each other; `image.mip(n)` copies level n,
+    /// `image.layer(n)` layer n. Returns its number among the read-backs.
     pub(crate) fn read_back(&mut self, image: ImageRef) -> ReadBack {
-        let mip = image.mips.0;
-        self.want(image.mip(mip));
+        let image = image.mip(image.mips.0);
+        self.want(image);
         self.resources[image.id].image_usage |= vk::ImageUsageFlags::TRANSFER_SRC;
-        self.read_backs.push((image.id, mip));
+        self.read_backs.push((image.id, Some(image.part())));
         ReadBack(self.read_backs.len() - 1)
     }
 
@@ -287,7 +286,7 @@ impl<'s> Graph<'s> {
     pub(crate) fn read_back_buffer<T>(&mut self, buffer: BufferRef<T>) -> ReadBack {
         self.want_buffer(buffer);
         self.resources[buffer.id].buffer_usage |= vk::BufferUsageFlags::TRANSFER_SRC;
-        self.read_backs.push((buffer.id, 0));
+        self.read_backs.push((buffer.id, None));
         ReadBack(self.read_backs.len() - 1)
     }
 
@@ -334,7 +333,7 @@ impl<'s> Graph<'s> {
     /// By the resource's name: its number is another one in a frame that asks for more.
     fn hash_access(&self, access: &Access, hasher: &mut impl Hasher) {
         match access {
-            Access::Image { image, mips, usage } => (&self.resources[*image].name, mips, usage).hash(hasher),
+            Access::Image { image, part, usage } => (&self.resources[*image].name, part, usage).hash(hasher),
             Access::Buffer { buffer, usage } => (&self.resources[*buffer].name, usage).hash(hasher),
         }
     }
@@ -381,14 +380,14 @@ impl<'s> Graph<'s> {
 /// The places that an access touches, and whether it reads and writes what they hold.
 pub(super) fn places(access: &Access) -> Vec<(Place, bool, bool)> {
     match access {
-        Access::Image { image, mips, usage } => {
+        Access::Image { image, part, usage } => {
             let (reads, writes) = match usage {
                 ImageUse::Sampled(_) | ImageUse::StorageRead | ImageUse::DepthTest => (true, false),
                 ImageUse::StorageWrite | ImageUse::StorageStart | ImageUse::Clear => (false, true),
                 ImageUse::StorageModify => (true, true),
                 ImageUse::Color { keep } | ImageUse::Depth { keep } => (*keep, true),
             };
-            mips.clone().map(|mip| ((*image, mip), reads, writes)).collect()
+            part.places().map(|place| ((*image, place), reads, writes)).collect()
         }
         Access::Buffer { buffer, usage } => {
             let (reads, writes) = match usage {

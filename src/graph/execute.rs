@@ -46,14 +46,14 @@ impl Graph<'_> {
     }
 
     /// The key of what memory holds.
-    fn held(&self, (resource, mip): Place) -> Option<u64> {
+    fn held(&self, (resource, part): Place) -> Option<u64> {
         let resource = &self.resources[resource];
         match &resource.body {
             // The host writes them before the frame; the scene's stand anyway.
             Body::Upload(_) | Body::ExternalBuffer(_) | Body::ExternalImage(_) => {
-                Some(resource.content[mip as usize].0)
+                Some(resource.content[part as usize].0)
             }
-            Body::Image(info) if self.store.fits(resource) => self.store.image_key(&resource.name, info, mip),
+            Body::Image(info) if self.store.fits(resource) => self.store.image_key(&resource.name, info, part),
             Body::Buffer { bytes } if self.store.fits(resource) => self.store.buffer_key(&resource.name, *bytes),
             Body::Image(_) | Body::Buffer { .. } => None,
         }
@@ -264,12 +264,12 @@ impl Graph<'_> {
 
     /// Remembers what the outputs of a pass that ran now hold.
     fn note_contents(&mut self, index: usize) {
-        for &Version { place: (resource, mip), key } in &self.passes[index].needs.writes {
+        for &Version { place: (resource, part), key } in &self.passes[index].needs.writes {
             let resource = &self.resources[resource];
             match &resource.body {
                 Body::Image(_) => {
                     if let Some(stored) = self.store.images.get_mut(&resource.name) {
-                        stored.keys[mip as usize] = Some(key);
+                        stored.keys[part as usize] = Some(key);
                     }
                 }
                 _ => {

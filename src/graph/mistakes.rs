@@ -58,13 +58,17 @@ impl Graph<'_> {
         }
     }
 
-    pub(super) fn note_read_of_nothing(&mut self, pass: &Pass, (resource, mip): Place, key: u64) {
+    pub(super) fn note_read_of_nothing(&mut self, pass: &Pass, (resource, place): Place, key: u64) {
         let resource = &self.resources[resource];
         if key != NOTHING || stands_for_nothing(&resource.name) {
             return;
         }
         let what = match &resource.body {
-            Body::Image(info) if info.mips > 1 => format!("level {mip} of {}", resource.name),
+            Body::Image(info) if info.parts() > 1 => {
+                let [level, layer] = info.level_and_layer(place);
+                let layer = if info.layers > 1 { format!(" of layer {layer}") } else { String::new() };
+                format!("level {level}{layer} of {}", resource.name)
+            }
             _ => resource.name.clone(),
         };
         let name = pass.full_name();

@@ -32,10 +32,10 @@ pub(super) fn merged_needs(
     let mut merged: Vec<(usize, u32, Need)> = Vec::new();
     for access in pass.accesses() {
         let (resource, places, need) = match access {
-            Access::Image { image, mips, usage } => {
-                (*image, mips.clone(), image_need(*usage, shaders, holds_depth(*image)))
+            Access::Image { image, part, usage } => {
+                (*image, part.places().collect(), image_need(*usage, shaders, holds_depth(*image)))
             }
-            Access::Buffer { buffer, usage } => (*buffer, 0..1, buffer_need(*usage, shaders)),
+            Access::Buffer { buffer, usage } => (*buffer, vec![0], buffer_need(*usage, shaders)),
         };
         for place in places {
             match merged.iter_mut().find(|(known, known_place, _)| (*known, *known_place) == (resource, place)) {
@@ -56,13 +56,13 @@ pub(super) fn merged_needs(
 pub(super) fn two_layouts(pass: &Pass, holds_depth: impl Fn(usize) -> bool) -> Option<usize> {
     let mut layouts: Vec<(usize, u32, vk::ImageLayout)> = Vec::new();
     for access in pass.accesses() {
-        let Access::Image { image, mips, usage } = access else { continue };
+        let Access::Image { image, part, usage } = access else { continue };
         let layout = layout_of(*usage, holds_depth(*image));
-        for mip in mips.clone() {
-            match layouts.iter().find(|(known, level, _)| (*known, *level) == (*image, mip)) {
+        for place in part.places() {
+            match layouts.iter().find(|(known, at, _)| (*known, *at) == (*image, place)) {
                 Some((.., known)) if *known != layout => return Some(*image),
                 Some(_) => {}
-                None => layouts.push((*image, mip, layout)),
+                None => layouts.push((*image, place, layout)),
             }
         }
     }

@@ -52,10 +52,16 @@ impl Graph<'_> {
 
     fn no_image(&mut self, dim: ImageDim, integers: bool) -> ImageRef {
         let format = if integers { vk::Format::R32_UINT } else { vk::Format::R32_SFLOAT };
-        let info = ImageInfo { format, extent: [1; 3], mips: 1, layers: 1, volume: dim == ImageDim::D3 };
+        let info = ImageInfo {
+            format,
+            extent: [1; 3],
+            mips: 1,
+            layers: if dim == ImageDim::Cube { 6 } else { 1 },
+            volume: dim == ImageDim::D3,
+        };
         let name = format!("{NOTHING}{dim:?}.{format:?}").to_lowercase();
         match self.named(&name) {
-            Some(id) => ImageRef { id, mips: (0, 1), info },
+            Some(id) => ImageRef::whole(id, info),
             None => self.image_with(&name, info),
         }
     }

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
-use std::ops::Range;
 use std::sync::Arc;
 
-use super::bindings::Access;
+use super::bindings::{Access, Part};
 use super::demand::{Needs, Verdict};
 use super::dependence::Dependence;
 use super::piece::{joined, split};
@@ -55,7 +54,7 @@ pub(super) enum Work {
     Dispatch([u32; 3]),
     DispatchIndirect { buffer: usize, offset: u64 },
     Draw(Draws),
-    ClearImage { image: usize, mips: Range<u32>, value: ClearColor },
+    ClearImage { image: usize, part: Part, value: ClearColor },
     FillBuffer { buffer: usize, word: u32 },
 }
 

@@ -58,14 +58,15 @@ impl Graph<'_> {
         };
         let places_of = |access: &Access| places(access).into_iter().map(|(place, ..)| place).collect::<Vec<_>>();
         let accesses = pass.accesses().filter(whole);
-        accesses.flat_map(|access| places_of(access).into_iter().map(|(id, mip)| (access.clone(), id, mip))).collect()
+        accesses.flat_map(|access| places_of(access).into_iter().map(|(id, part)| (access.clone(), id, part))).collect()
     }
 
     /// Records a transfer of an image that is in the layout for storage, and stays so.
-    fn in_layout(&self, image: &Image, mip: u32, layout: vk::ImageLayout, transfer: impl FnOnce()) {
+    fn in_layout(&self, image: &Image, [mip, layer]: [u32; 2], layout: vk::ImageLayout, transfer: impl FnOnce()) {
         let general = vk::ImageLayout::GENERAL;
         let turn = |old_layout, new_layout| {
-            let images = vec![ImageBarrier { image, mip, scope: Scope::FULL, old_layout, new_layout }];
+            let images =
+                vec![ImageBarrier { image, mip, layers: layer..layer + 1, scope: Scope::FULL, old_layout, new_layout }];
             self.store.recorder.barriers(&Barriers { memory: None, images });
         };
         turn(general, layout);
@@ -78,7 +79,7 @@ impl Graph<'_> {
         let Some(proof) = &self.proof else { return };
         let recorder = &self.store.recorder;
         recorder.full_barrier();
-        for (access, id, mip) in self.wholes(index) {
+        for (access, id, part) in self.wholes(index) {
             match (&access, &self.resources[id].body) {
                 (Access::Image { .. }, Body::Image(info)) => {
                     let value = match info.format {
@@ -88,8 +89,9 @@ impl Graph<'_> {
                         _ => vk::ClearColorValue { float32: [f32::from_bits(proof.pattern); 4] },
                     };
                     let image = self.memory_of_image(id);
-                    self.in_layout(&image, mip, vk::ImageLayout::TRANSFER_DST_OPTIMAL, || {
-                        recorder.clear_image(&image, mip, value);
+                    let place = image.info.level_and_layer(part);
+                    self.in_layout(&image, place, vk::ImageLayout::TRANSFER_DST_OPTIMAL, || {
+                        recorder.clear_image(&image, place, value);
                     });
                 }
                 _ => recorder.fill(&self.memory_of_buffer(id), 0, vk::WHOLE_SIZE, proof.pattern),
@@ -104,14 +106,10 @@ impl Graph<'_> {
             return Ok(());
         }
         self.store.recorder.full_barrier();
-        for (_, id, mip) in self.wholes(index) {
+        for (_, id, part) in self.wholes(index) {
             let resource = &self.resources[id];
             let bytes = match &resource.body {
-                Body::Image(info) => {
-                    info.extent.iter().map(|&length| u64::from((length >> mip).max(1))).product::<u64>()
-                        * u64::from(info.layers)
-                        * texel_bytes(info.format)
-                }
+                Body::Image(info) => info.part_bytes(info.level_and_layer(part)[0]),
                 Body::Buffer { bytes } => bytes / 4 * 4,
                 _ => continue,
             };
@@ -120,8 +118,9 @@ impl Graph<'_> {
             match &resource.body {
                 Body::Image(_) => {
                     let image = self.memory_of_image(id);
-                    self.in_layout(&image, mip, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, || {
-                        self.store.recorder.read_image(&image, mip, &buffer, 0);
+                    let [mip, layer] = image.info.level_and_layer(part);
+                    self.in_layout(&image, [mip, layer], vk::ImageLayout::TRANSFER_SRC_OPTIMAL, || {
+                        self.store.recorder.read_image(&image, mip, layer..layer + 1, &buffer, 0);
                     });
                 }
                 _ => self.store.recorder.copy(&self.memory_of_buffer(id), 0, &buffer, 0, bytes),

@@ -5,21 +5,17 @@ use ash::vk;
 use super::barriers::Need;
 use super::declare::Graph;
 use super::resource::Body;
-use crate::vulkan::{Barriers, Buffer, ImageBarrier, Location, Scope, VulkanError, texel_bytes};
+use crate::vulkan::{Barriers, Buffer, ImageBarrier, Location, Scope, VulkanError};
 
 impl Graph<'_> {
     /// Where each read-back lies in the read-back buffer: offset and size.
     pub(super) fn provide_read_back(&mut self) -> Result<Vec<(u64, u64)>, VulkanError> {
         let mut places = Vec::new();
         let mut end = 0_u64;
-        for &(id, mip) in &self.read_backs {
-            let size = match &self.resources[id].body {
-                Body::Image(info) => {
-                    info.extent.iter().map(|&length| u64::from((length >> mip).max(1))).product::<u64>()
-                        * u64::from(info.layers)
-                        * texel_bytes(info.format)
-                }
-                Body::Buffer { bytes } => bytes.next_multiple_of(4).max(4),
+        for (id, part) in &self.read_backs {
+            let size = match (&self.resources[*id].body, part) {
+                (Body::Image(info), Some(part)) => info.part_bytes(part.mips.start) * part.layers.len() as u64,
+                (Body::Buffer { bytes }, _) => bytes.next_multiple_of(4).max(4),
                 _ => 0,
             };
             places.push((end, size));
@@ -41,7 +37,7 @@ impl Graph<'_> {
 
     pub(super) fn record_read_backs(&mut self, places: &[(u64, u64)]) {
         for (index, &(offset, size)) in places.iter().enumerate() {
-            let (id, mip) = self.read_backs[index];
+            let (id, part) = self.read_backs[index].clone();
             let name = self.resources[id].name.clone();
             let read = Need {
                 stages: vk::PipelineStageFlags2::ALL_TRANSFER,
@@ -51,19 +47,26 @@ impl Graph<'_> {
                 discards: false,
             };
             let Some(target) = &self.store.read_back else { return };
-            if let Some(stored) = self.store.images.get_mut(&name) {
-                let found = stored.states[mip as usize]
-                    .transition(Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read });
+            if let (Some(stored), Some(part)) = (self.store.images.get_mut(&name), part) {
                 let image = stored.image.clone();
-                let barriers = found.map(|found| ImageBarrier {
-                    image: &image,
-                    mip,
-                    scope: Scope::FULL,
-                    old_layout: found.old_layout,
-                    new_layout: found.new_layout,
-                });
-                self.store.recorder.barriers(&Barriers { memory: None, images: barriers.into_iter().collect() });
-                self.store.recorder.read_image(&image, mip, target, offset);
+                let need = Need { layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, ..read };
+                let mut barriers = Barriers::default();
+                for place in part.places() {
+                    let Some(found) = stored.states[place as usize].transition(need) else { continue };
+                    let [mip, layer] = image.info.level_and_layer(place);
+                    let (old_layout, new_layout) = (found.old_layout, found.new_layout);
+                    let layers = layer..layer + 1;
+                    barriers.images.push(ImageBarrier {
+                        image: &image,
+                        mip,
+                        layers,
+                        scope: Scope::FULL,
+                        old_layout,
+                        new_layout,
+                    });
+                }
+                self.store.recorder.barriers(&barriers);
+                self.store.recorder.read_image(&image, part.mips.start, part.layers.clone(), target, offset);
             } else if let Some(stored) = self.store.buffers.get_mut(&name) {
                 // A full barrier stands before the read-backs.
                 stored.state.transition(read);

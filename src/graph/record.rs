@@ -93,7 +93,7 @@ impl Graph<'_> {
         let mut barriers = Barriers::default();
         let pass = &self.passes[index];
         let stages = pass.program.map_or(vk::PipelineStageFlags2::ALL_TRANSFER, pipeline_stages);
-        for (resource, mips, need) in merged_needs(pass, stages, |id| self.holds_depth(id)) {
+        for (resource, place, need) in merged_needs(pass, stages, |id| self.holds_depth(id)) {
             let body = &self.resources[resource];
             match &body.body {
                 Body::ExternalBuffer(_) | Body::ExternalImage(_) => {}
@@ -109,7 +109,7 @@ impl Graph<'_> {
                 }
                 Body::Image(_) => {
                     let stored = self.store.images.get_mut(&body.name).expect("provided before recording");
-                    let Some(found) = stored.states[mips as usize].transition(need) else { continue };
+                    let Some(found) = stored.states[place as usize].transition(need) else { continue };
                     let scope = Scope {
                         from_stages: found.from_stages,
                         from_access: found.from_access,
@@ -117,9 +117,11 @@ impl Graph<'_> {
                         to_access: found.to_access,
                     };
                     let (old_layout, new_layout) = (found.old_layout, found.new_layout);
+                    let [mip, layer] = images[&resource].info.level_and_layer(place);
                     barriers.images.push(ImageBarrier {
                         image: &images[&resource],
-                        mip: mips,
+                        mip,
+                        layers: layer..layer + 1,
                         scope,
                         old_layout,
                         new_layout,
@@ -134,9 +136,10 @@ impl Graph<'_> {
         let recorder = &self.store.recorder;
         match &pass.work {
             Work::Skipped(_) => {}
-            Work::ClearImage { image, mips, value } => {
-                for mip in mips.clone() {
-                    recorder.clear_image(&self.memory_of_image(*image), mip, clear_value(*value));
+            Work::ClearImage { image, part, value } => {
+                let image = self.memory_of_image(*image);
+                for place in part.places() {
+                    recorder.clear_image(&image, image.info.level_and_layer(place), clear_value(*value));
                 }
             }
             Work::FillBuffer { buffer, word } => {

@@ -12,9 +12,9 @@ use crate::vulkan::{Buffer, Device, Image, ImageInfo, Location, Pipelines, Queri
 pub(super) struct StoredImage {
     pub(super) image: Arc<Image>,
     pub(super) usage: vk::ImageUsageFlags,
-    /// For each mip level.
+    /// For each mip level of each layer ([`ImageInfo::level_and_layer`]).
     pub(super) states: Vec<State>,
-    /// For each mip level: the key of its content, if it has one.
+    /// Likewise: the key of its content, if it has one.
     pub(super) keys: Vec<Option<u64>>,
     pub(super) piece: String,
 }
@@ -146,9 +146,9 @@ impl Store {
     }
 
     /// The key of what the named image holds, if it has this shape.
-    pub(super) fn image_key(&self, name: &str, info: &ImageInfo, mip: u32) -> Option<u64> {
+    pub(super) fn image_key(&self, name: &str, info: &ImageInfo, part: u32) -> Option<u64> {
         let stored = self.images.get(name).filter(|stored| stored.image.info == *info)?;
-        stored.keys[mip as usize]
+        stored.keys[part as usize]
     }
 
     /// The key of what the named buffer holds, if it has this size.
@@ -185,13 +185,17 @@ impl Store {
                 // The old memory is returned first: the two need not fit side by side.
                 let old = self.images.remove(name).map_or(vk::ImageUsageFlags::empty(), |stored| stored.usage);
                 let usage = resource.image_usage | old;
-                let image = Image::new(&self.device, name, *info, usage, vk::ImageCreateFlags::empty())?;
-                let mips = info.mips as usize;
+                let flags = match info.holds_cubes() {
+                    true => vk::ImageCreateFlags::CUBE_COMPATIBLE,
+                    false => vk::ImageCreateFlags::empty(),
+                };
+                let image = Image::new(&self.device, name, *info, usage, flags)?;
+                let parts = info.parts() as usize;
                 let stored = StoredImage {
                     image: Arc::new(image),
                     usage,
-                    states: vec![State::default(); mips],
-                    keys: vec![None; mips],
+                    states: vec![State::default(); parts],
+                    keys: vec![None; parts],
                     piece,
                 };
                 self.images.insert(name.clone(), stored);

@@ -36,11 +36,12 @@ impl Graph<'_> {
         let name = self.passes.last().map(Pass::full_name).unwrap_or_default();
         let mut outputs = Vec::new();
         for access in accesses {
-            for ((id, mip), _, writes) in places(access) {
+            for ((id, place), _, writes) in places(access) {
                 let resource = &self.resources[id];
                 let output = match (&resource.body, access) {
                     (Body::Image(info), Access::Image { usage, .. }) if !matches!(usage, ImageUse::Depth { .. }) => {
-                        Output::Image(ImageRef { id, mips: (mip, mip + 1), info: *info })
+                        let [mip, layer] = info.level_and_layer(place);
+                        Output::Image(ImageRef::whole(id, *info).mip(mip).layer(layer))
                     }
                     (Body::Buffer { bytes }, _) => Output::Buffer(BufferRef {
                         id,

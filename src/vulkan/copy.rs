@@ -2,6 +2,8 @@
 
 #![allow(unsafe_code, reason = "every Vulkan command is an unsafe call")]
 
+use std::ops::Range;
+
 use ash::vk;
 
 use super::memory::{Buffer, Image};
@@ -20,13 +22,13 @@ impl Recorder {
         unsafe { self.device.raw.cmd_copy_buffer(self.commands, from.raw, to.raw, &[region]) };
     }
 
-    pub(crate) fn clear_image(&self, image: &Image, mip: u32, value: vk::ClearColorValue) {
+    pub(crate) fn clear_image(&self, image: &Image, [mip, layer]: [u32; 2], value: vk::ClearColorValue) {
         let range = vk::ImageSubresourceRange {
             aspect_mask: vk::ImageAspectFlags::COLOR,
             base_mip_level: mip,
             level_count: 1,
-            base_array_layer: 0,
-            layer_count: vk::REMAINING_ARRAY_LAYERS,
+            base_array_layer: layer,
+            layer_count: 1,
         };
         // SAFETY: as above; the image is in the transfer layout.
         unsafe {
@@ -40,9 +42,9 @@ impl Recorder {
         };
     }
 
-    /// Copies one mip level of every layer to `buffer`, rows close together.
-    pub(crate) fn read_image(&self, image: &Image, mip: u32, buffer: &Buffer, offset: u64) {
-        let regions = [copy_region(image, mip, 0, image.info.layers, offset)];
+    /// Copies one mip level of some layers to `buffer`, rows close together.
+    pub(crate) fn read_image(&self, image: &Image, mip: u32, layers: Range<u32>, buffer: &Buffer, offset: u64) {
+        let regions = [copy_region(image, mip, layers.start, layers.end - layers.start, offset)];
         // SAFETY: as above; the image is in the transfer layout; the buffer is large enough.
         unsafe {
             self.device.raw.cmd_copy_image_to_buffer(
@@ -64,8 +66,8 @@ impl Recorder {
             layer_count: image.info.layers,
         };
         let corner = |mip: u32| {
-            let [width, height, _] = image.info.extent.map(|length| i32::try_from((length >> mip).max(1)).unwrap_or(1));
-            [vk::Offset3D::default(), vk::Offset3D { x: width, y: height, z: 1 }]
+            let [x, y, z] = image.info.extent.map(|length| i32::try_from((length >> mip).max(1)).unwrap_or(1));
+            [vk::Offset3D::default(), vk::Offset3D { x, y, z }]
         };
         let regions = [vk::ImageBlit {
             src_subresource: layers(mip - 1),

@@ -26,6 +26,7 @@ pub struct ContextOptions {
 /// A logical device with one queue for everything. Shared by `Arc` with all that is made on it, and so destroyed last.
 pub(crate) struct Device {
     pub(crate) raw: ash::Device,
+    physical: vk::PhysicalDevice,
     pub(crate) queue: Mutex<vk::Queue>,
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
@@ -105,6 +106,7 @@ impl Device {
         };
         let device = Device {
             raw,
+            physical,
             queue: Mutex::new(queue),
             survey,
             labels,
@@ -118,6 +120,26 @@ impl Device {
 
     pub(crate) fn report(&self) -> &DeviceReport {
         &self.survey.report
+    }
+
+    /// Whether the device has images of this kind at all.
+    pub(crate) fn has_images(
+        &self,
+        format: vk::Format,
+        kind: vk::ImageType,
+        usage: vk::ImageUsageFlags,
+        flags: vk::ImageCreateFlags,
+    ) -> Result<bool, VulkanError> {
+        let tiling = vk::ImageTiling::OPTIMAL;
+        // SAFETY: the physical device belongs to the instance, which is alive.
+        let found = unsafe {
+            let raw = &self.instance.raw;
+            raw.get_physical_device_image_format_properties(self.physical, format, kind, tiling, usage, flags)
+        };
+        match found {
+            Err(vk::Result::ERROR_FORMAT_NOT_SUPPORTED) => Ok(false),
+            found => found.called("vkGetPhysicalDeviceImageFormatProperties").map(|_| true),
+        }
     }
 
     pub(crate) fn is_cpu(&self) -> bool {

@@ -197,6 +197,27 @@ pub(crate) struct ImageInfo {
 }
 
 impl ImageInfo {
+    /// Mip levels of all layers.
+    pub(crate) fn parts(&self) -> u32 {
+        self.mips * self.layers
+    }
+
+    /// The level and the layer that part number `part` is: layers after each other, each with all its levels.
+    pub(crate) fn level_and_layer(&self, part: u32) -> [u32; 2] {
+        [part % self.mips, part / self.mips]
+    }
+
+    /// Whether six layers may be the faces of a cube.
+    pub(crate) fn holds_cubes(&self) -> bool {
+        !self.volume && self.layers >= 6 && self.extent[0] == self.extent[1]
+    }
+
+    /// Bytes of one level of one layer, rows close together.
+    pub(crate) fn part_bytes(&self, level: u32) -> u64 {
+        let texels: u64 = self.extent.iter().map(|&length| u64::from((length >> level).max(1))).product();
+        texels * texel_bytes(self.format)
+    }
+
     pub(crate) fn aspect(&self) -> vk::ImageAspectFlags {
         match self.format {
             vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
@@ -212,6 +233,7 @@ impl ImageInfo {
 pub(crate) struct SubresourceView {
     pub(crate) dim: ImageDim,
     pub(crate) mips: Range<u32>,
+    pub(crate) layers: Range<u32>,
     pub(crate) aspect: vk::ImageAspectFlags,
     /// The image's own format, or another of the same texel size.
     pub(crate) format: vk::Format,
@@ -238,6 +260,11 @@ impl Image {
         check_size(device, name, &info)?;
         let [width, height, depth] = info.extent;
         let kind = if info.volume { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D };
+        if !device.has_images(info.format, kind, usage, flags)? {
+            let format = format!("{:?}", info.format).to_lowercase();
+            let reason = format!("it has no images of format {format} for {usage:?}, which {name} needs");
+            return Err(VulkanError::Unfit { device: device.report().name.clone(), reason });
+        }
         let create = vk::ImageCreateInfo::default()
             .flags(flags)
             .image_type(kind)
@@ -288,8 +315,8 @@ impl Image {
             aspect_mask: what.aspect,
             base_mip_level: what.mips.start,
             level_count: what.mips.end - what.mips.start,
-            base_array_layer: 0,
-            layer_count: self.info.layers,
+            base_array_layer: what.layers.start,
+            layer_count: what.layers.end - what.layers.start,
         };
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)

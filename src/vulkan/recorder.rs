@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "every Vulkan command is an unsafe call")]
 
 use std::ffi::CString;
+use std::ops::Range;
 use std::sync::{Arc, PoisonError};
 
 use ash::vk;
@@ -42,10 +43,11 @@ impl Scope {
     };
 }
 
-/// A dependency on one mip level of an image, with its change of layout.
+/// A dependency on one mip level of some layers of an image, with its change of layout.
 pub(crate) struct ImageBarrier<'a> {
     pub(crate) image: &'a Image,
     pub(crate) mip: u32,
+    pub(crate) layers: Range<u32>,
     pub(crate) scope: Scope,
     pub(crate) old_layout: vk::ImageLayout,
     pub(crate) new_layout: vk::ImageLayout,
@@ -163,8 +165,8 @@ impl Recorder {
                     aspect_mask: barrier.image.info.aspect(),
                     base_mip_level: barrier.mip,
                     level_count: 1,
-                    base_array_layer: 0,
-                    layer_count: vk::REMAINING_ARRAY_LAYERS,
+                    base_array_layer: barrier.layers.start,
+                    layer_count: barrier.layers.end - barrier.layers.start,
                 };
                 vk::ImageMemoryBarrier2::default()
                     .src_stage_mask(barrier.scope.from_stages)

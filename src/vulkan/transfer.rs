@@ -43,7 +43,14 @@ pub(crate) fn image_with(
     let relayout = |mips: std::ops::Range<u32>, old_layout, new_layout| Barriers {
         memory: None,
         images: mips
-            .map(|mip| ImageBarrier { image: &image, mip, scope: Scope::FULL, old_layout, new_layout })
+            .map(|mip| ImageBarrier {
+                image: &image,
+                mip,
+                layers: 0..info.layers,
+                scope: Scope::FULL,
+                old_layout,
+                new_layout,
+            })
             .collect(),
     };
     let mut recorder = Recorder::new(device)?;
