@@ -17,8 +17,9 @@ const CELLS: u32 = 1 << 13;
 const LARGEST_SIDE: u32 = 64;
 /// Points at which a primitive is looked at, about.
 const POINTS: u32 = 1 << 19;
-/// Points an edge of a texel, where there are enough.
+/// Points an edge of a texel and of a triangle, where there are enough.
 const POINTS_OF_TEXEL: f32 = 4.0;
+const POINTS_OF_TRIANGLE: f32 = 128.0;
 /// Cells of a triangle that texture coordinates do not tell from others (vertex colours alone decide), an edge.
 const PLAIN_SIDE: u32 = 16;
 /// What a cell that shines at none of its points, but may between them, counts as: a share of the mean of those that may shine.
@@ -172,7 +173,7 @@ fn emission_of_triangle(surface: &TrianglePoints<'_>, triangle_count: u32) -> Tr
     if shining == 0 {
         return TriangleEmission::default();
     }
-    let wanted = texels.map_or(PLAIN_SIDE as f32, |texels| texels * POINTS_OF_TEXEL) / side as f32;
+    let wanted = POINTS_OF_TRIANGLE.max(texels.unwrap_or(0.0) * POINTS_OF_TEXEL) / side as f32;
     let affordable = (POINTS / triangle_count / u32::try_from(shining).unwrap_or(u32::MAX)).isqrt();
     let points = (wanted.ceil().clamp(1.0, 1e6) as u32).clamp(2, affordable.max(2));
     let of_cells: Vec<([f32; 3], f32)> = all
@@ -181,11 +182,9 @@ fn emission_of_triangle(surface: &TrianglePoints<'_>, triangle_count: u32) -> Tr
         .map(|(cell, may)| if *may { mean_of_cell(surface, *cell, side, points) } else { ([0.0; 3], 0.0) })
         .collect();
     let count = all.len() as f64;
-    let mean = |part: &dyn Fn(&([f32; 3], f32)) -> f32| {
-        (of_cells.iter().map(|cell| f64::from(part(cell))).sum::<f64>() / count) as f32
-    };
-    let mut radiance = [0, 1, 2].map(|channel| mean(&|(mean, _)| mean[channel]));
-    let covered = mean(&|(_, covered)| *covered);
+    let mean = |values: &mut dyn Iterator<Item = f32>| (values.map(f64::from).sum::<f64>() / count) as f32;
+    let mut radiance = [0, 1, 2].map(|channel| mean(&mut of_cells.iter().map(|(radiance, _)| radiance[channel])));
+    let covered = mean(&mut of_cells.iter().map(|(_, covered)| *covered));
     if covered <= 0.0 {
         // Whatever there is lies between the points.
         let share = shining as f32 / (all.len() as f32 * 4.0 * (points * points) as f32);
@@ -224,4 +223,77 @@ fn emissive_cells(side: u32, mut light: Vec<f32>, may_shine: &[bool], shining: u
     let scale = if total > 0.0 { light.len() as f32 / total } else { 0.0 };
     light.iter_mut().for_each(|light| *light *= scale);
     Some(EmissiveCells { side, light, density })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::material::Wrap;
+    use super::super::{Alpha, MaterialId, TextureId, TextureRef};
+    use super::*;
+
+    /// Texels of no pattern, most of them dark or cut away.
+    fn texture(width: u32, height: u32, seed: u32, wrap: [Wrap; 2], nearest: bool) -> Texture {
+        let byte = |index: u32| {
+            let mixed = (index ^ seed).wrapping_mul(0x9E37_79B9) >> 8;
+            if mixed.is_multiple_of(3) { (mixed >> 5) as u8 | 128 } else { 0 }
+        };
+        let rgba8 = (0..4 * width * height).map(byte).collect();
+        Texture { name: String::new(), width, height, rgba8, wrap, nearest, srgb: true }
+    }
+
+    fn primitive(reach: f32) -> Primitive {
+        let corners = vec![[0.1, 0.2], [reach, 0.3], [0.4, reach]];
+        Primitive {
+            positions: vec![[0.0; 3]; 3],
+            indices: vec![0, 1, 2],
+            texcoords: [Some(corners.clone()), Some(corners.iter().map(|[u, v]| [1.0 - v, *u]).collect())],
+            colors: Some(vec![[1.0; 4], [1.0, 1.0, 1.0, 0.9], [1.0, 1.0, 1.0, 0.7]]),
+            material: MaterialId(0),
+            ..Primitive::default()
+        }
+    }
+
+    /// Where a point shines points are drawn, and the mean is that of many points elsewhere than those that were looked at.
+    #[test]
+    fn every_point_that_shines_may_be_drawn() {
+        for (case, wrap) in (0..).zip([Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]) {
+            for (reach, nearest) in [(0.9, true), (1.7, false), (-2.3, true), (0.35, false)] {
+                let textures =
+                    [texture(13, 9, case, [wrap, Wrap::Repeat], nearest), texture(8, 16, case + 9, [wrap; 2], nearest)];
+                let material = Material {
+                    emissive: [1.0, 2.0, 3.0],
+                    alpha: Alpha::Mask { cutoff: 0.6 },
+                    base_color_texture: Some(TextureRef::new(TextureId(0))),
+                    emissive_texture: Some(TextureRef { texcoord: 1, ..TextureRef::new(TextureId(1)) }),
+                    ..Material::default()
+                };
+                let primitive = primitive(reach);
+                let Emission::Uneven(found) = emission_of(&primitive, &material, &textures) else { continue };
+                let points = EmissionPoints::new(&primitive, &material, &textures, true);
+                let surface = points.of_triangle(&primitive.indices);
+                let mut sum = 0.0;
+                const SIDE: u32 = 173;
+                for place in middles(SIDE) {
+                    let light = surface.radiance(place).map_or(0.0, luminance);
+                    sum += f64::from(light);
+                    let Some(cells) = found[0].cells.as_ref().filter(|_| light > 0.0) else { continue };
+                    let [x, y] = place.map(|place| place * f64::from(cells.side));
+                    let upper = x.fract() + y.fract() > 1.0;
+                    let cell = Cell { column: x as u32, row: y as u32, upper };
+                    assert!(cells.density[cell.number(cells.side)] > 0.0, "{wrap:?} {reach}: {cell:?} shines");
+                }
+                let mean = sum / f64::from(SIDE * SIDE);
+                let held = f64::from(luminance(found[0].radiance));
+                let shines = found[0].covered > 0.0 || mean > 0.0;
+                assert!(
+                    !shines || (held - mean).abs() < 0.02 * mean,
+                    "{wrap:?} {reach} {nearest}: {held} in place of {mean}"
+                );
+                if let Some(cells) = &found[0].cells {
+                    let all: f32 = cells.density.iter().sum();
+                    assert!((all / cells.density.len() as f32 - 1.0).abs() < 1e-3, "{all}");
+                }
+            }
+        }
+    }
 }
