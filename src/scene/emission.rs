@@ -2,15 +2,13 @@
 //! comes from, for whatever draws points on emitters. It is found on the host from the finest texels, by points so dense that each texel
 //! holds several of them, and says nothing of where a primitive stands: moving a node leaves it as it is.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
 use super::cutout::{Cutout, cutout};
 use super::emission_points::{EmissionPoints, TrianglePoints, luminance};
-use super::mesh::{Instance, Primitive};
+use super::mesh::Primitive;
 use super::triangle_cells::{Cell, cells, middles, strip};
-use super::{Material, Scene, Texture};
+use super::{Material, Texture};
 
 /// Cells of a primitive's triangles together, and of one edge, at most.
 const CELLS: u32 = 1 << 13;
@@ -126,21 +124,8 @@ fn pick<T: Copy>(all: impl Iterator<Item = T> + Clone, weight: impl Fn(T) -> f64
     found
 }
 
-impl Scene {
-    /// What the surface of an instance sends out. Kept until its material changes.
-    pub(crate) fn emission(&self, instance: &Instance) -> &Arc<Emission> {
-        let primitive = self.primitive(instance);
-        self.emissions[instance.mesh.0][instance.primitive]
-            .get_or_init(|| Arc::new(emission_of(primitive, self.material_of(instance), &self.textures)))
-    }
-
-    /// Whether some point of an instance sends out light.
-    pub(crate) fn shines(&self, instance: &Instance) -> bool {
-        self.material_of(instance).emits() && **self.emission(instance) != Emission::Dark
-    }
-}
-
-fn emission_of(primitive: &Primitive, material: &Material, textures: &[Texture]) -> Emission {
+/// What a primitive of this material sends out.
+pub(super) fn emission_of(primitive: &Primitive, material: &Material, textures: &[Texture]) -> Emission {
     let cut = cutout(material, textures, primitive.colors.is_some());
     if !material.emits() || cut == Cutout::Nothing || primitive.indices.is_empty() {
         return Emission::Dark;

@@ -13,7 +13,7 @@
 //! | `camera_choice` | which camera the scene is seen from |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
-//! | `emission`, `emission_points` | what alpha and textures leave of emissive surfaces |
+//! | `emission`, `emission_points`, `shining` | what alpha and textures leave of emissive surfaces |
 //! | `cutout` | what alpha leaves of a surface, material by material |
 //! | `triangle_cells` | a triangle cut into equal cells |
 //! | `sampling` | textures read as shaders read them |
@@ -49,6 +49,7 @@ mod material;
 mod mesh;
 mod rays;
 mod sampling;
+mod shining;
 mod tangents;
 pub(crate) mod triangle_cells;
 mod world;
