@@ -8,6 +8,12 @@ use super::reflect::{BindingKind, Stage};
 /// Programs that need more than every device offers, and why.
 pub(crate) const EXCEPTIONS: &[Exception] = &[
     storage_buffers("particle/emit", 5, "a path's state, in arrays of its own types, and the queue that it joins"),
+    Exception {
+        program: "path/light",
+        limit: Limit::SampledImages,
+        count: 17,
+        reason: "a path's state, and of a point on an emitter radiance and alpha: its textures, texture coordinates, vertex colours",
+    },
     storage_buffers("path/generate", 5, "a path's state, in arrays of its own types, and the queue that it joins"),
     storage_buffers(
         "photon_splat/project",

@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
+#include "lib/emissive_cells.glsl"
 #include "lib/emissive_points.glsl"
 
 // What the sky adds to the slot `direct` of one pixel, estimated from directions drawn as the surface scatters (where it is diffuse
@@ -38,7 +39,7 @@ vec3 light_from(Receiver receiver, LobeSample drawn, vec3 direction) {
     if (triangle.light_density <= 0.0 || cosine <= 0.0) {
         return vec3(0.0);
     }
-    float density = triangle.light_density * push.density_scale * hit.distance * hit.distance / max(cosine, 1e-9);
+    float density = emissive_density(triangle, hit.barycentric) * push.density_scale * hit.distance * hit.distance / max(cosine, 1e-9);
     return emissive_radiance(triangle, material, hit.barycentric) * power_heuristic(drawn.density, density);
 }
 

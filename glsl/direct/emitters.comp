@@ -8,7 +8,7 @@
 
 // What emissive surfaces add to the slot `direct` of one pixel, estimated from points y of them, drawn by power:
 //
-//   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L_e(y_k) · V / p_k        p = P(triangle)/A · d²/(n_y·−l)   [1/sr]
+//   L(x, v) ≈ 1/N Σ_k f(l_k, v) · (n·l_k)⁺ · L_e(y_k) · V / p_k        p = P(triangle) p(y) · d²/(n_y·−l)   [1/sr]
 //
 // `directions` finds the same light, as many times. Each lobe is weighted by the power heuristic (Veach & Guibas 1995).
 
@@ -18,15 +18,15 @@ layout(push_constant, scalar) uniform Push {
     vec3 shift;
     uint emitter_count;
     uint sample_count;
-    float density_scale;  // from a triangle's density among all lights to that among emissive triangles
+    float density_scale;  // from a point's density among all lights to that among emissive triangles
 } push;
 
 vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     Emitter emitter = pick_emitter(emissive_triangles, push.emitter_count, random.x);
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
-    vec2 place = point_of_triangle(random.yz);
-    vec3 target = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2;
+    EmissivePoint point = draw_emissive_point(triangle, random.yz);
+    vec3 target = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2;
     vec3 way = target - receiver.surface.position_rs;
     float distance2 = max(dot(way, way), 1e-30);
     vec3 to_light = way * inversesqrt(distance2);
@@ -38,10 +38,10 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     }
     LobeValue diffuse_part = diffuse_lobe(scattering.matter, scattering.viewer, direction, scattering.shares.x);
     LobeValue specular_part = specular_lobe(scattering.matter, scattering.viewer, direction, scattering.shares);
-    float density = triangle.light_density * push.density_scale * distance2 / max(cosine, 1e-9);
+    float density = point.density * push.density_scale * distance2 / max(cosine, 1e-9);
     vec3 reflected = diffuse_part.value * power_heuristic(density, diffuse_part.density)
                      + specular_part.value * power_heuristic(density, specular_part.density);
-    vec3 light = reflected * emissive_radiance(triangle, material, place) / density;
+    vec3 light = reflected * covered_radiance(triangle, material, point.place) / density;
     if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, target - receiver.ray_origin, 0.9999)) {
         return vec3(0.0);
     }

@@ -5,6 +5,8 @@
 
 // 1: the radiance of some emissive triangles is textured.
 layout(constant_id = 40) const uint EMISSIVE_TEXTURES = 1u;
+// 1: some emissive surface is cut out by its alpha.
+layout(constant_id = 41) const uint EMISSIVE_CUTOUTS = 0u;
 
 layout(set = 0, binding = 48) uniform usamplerBuffer emitters;            // punctual lights and emissive triangles
 layout(set = 0, binding = 49) uniform usamplerBuffer emissive_triangles;  // these alone

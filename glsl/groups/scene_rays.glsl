@@ -11,6 +11,8 @@ layout(constant_id = 33) const uint VERTEX_COLORS = 0u;
 layout(constant_id = 34) const uint NORMAL_MAPS = 0u;
 // The MATERIAL_ bits of the texture kinds that any material has.
 layout(constant_id = 35) const uint TEXTURES = 0u;
+// 1: points of some emissive triangles are drawn cell by cell (lib/emissive_cells.glsl).
+layout(constant_id = 36) const uint EMISSIVE_CELLS = 0u;
 
 layout(set = 0, binding = 32) uniform usamplerBuffer bvh_nodes;          // lib/bvh.glsl
 layout(set = 0, binding = 33) uniform samplerBuffer bvh_triangles;

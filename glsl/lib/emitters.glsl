@@ -5,6 +5,7 @@
 #ifndef LIB_EMITTERS
 #define LIB_EMITTERS
 
+#include "lib/emissive_cells.glsl"
 #include "lib/lights.glsl"
 #include "lib/traced_scene.glsl"
 
@@ -24,12 +25,6 @@ Emitter pick_emitter(usamplerBuffer emitters, uint count, float random) {
         entry = texelFetch(emitters, int(entry.y));
     }
     return Emitter((entry.z & EMITTER_TRIANGLE) != 0u, entry.z & ~EMITTER_TRIANGLE, uintBitsToFloat(entry.w));
-}
-
-// Uniform in area (Osada et al. 2002): barycentric coordinates of corners 1 and 2.
-vec2 point_of_triangle(vec2 random) {
-    float root = sqrt(random.x);
-    return vec2(root * (1.0 - random.y), root * random.y);
 }
 
 #endif

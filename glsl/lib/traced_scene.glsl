@@ -13,8 +13,9 @@ const uint TRIANGLE_FLAT = 0x80000000u;  // no vertex normals
 //   corner 0          | material and TRIANGLE_FLAT
 //   edge to corner 1  | normal at corner 0           normals: packed directions
 //   edge to corner 2  | normal at corner 1
-//   normal at corner 2 | density of points that next-event estimation takes on it, 1/m² | unused | unused
+//   normal at corner 2 | mean density of points that next-event estimation takes on it, 1/m² | its cells: first texel, number an edge
 //
+// Behind the triangles lie the cells of those whose points are not drawn evenly (lib/emissive_cells.glsl).
 // Lists of corners (texture coordinates, colors, tangents) hold three elements a triangle.
 struct Triangle {
     vec3 origin;
@@ -24,6 +25,7 @@ struct Triangle {
     bool flat_normals;
     uvec3 normals;
     float light_density;
+    uvec2 cells;
     int first_corner;
 };
 
@@ -32,10 +34,10 @@ Triangle load_triangle(usamplerBuffer triangles, uint index) {
     uvec4 a = texelFetch(triangles, first);
     uvec4 b = texelFetch(triangles, first + 1);
     uvec4 c = texelFetch(triangles, first + 2);
-    uvec2 d = texelFetch(triangles, first + 3).xy;
+    uvec4 d = texelFetch(triangles, first + 3);
     return Triangle(
         uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w & ~TRIANGLE_FLAT,
-        (a.w & TRIANGLE_FLAT) != 0u, uvec3(b.w, c.w, d.x), uintBitsToFloat(d.y), 3 * int(index));
+        (a.w & TRIANGLE_FLAT) != 0u, uvec3(b.w, c.w, d.x), uintBitsToFloat(d.y), d.zw, 3 * int(index));
 }
 
 // An attribute at a point of the triangle with the weights of its corners.

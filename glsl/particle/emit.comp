@@ -11,7 +11,7 @@
 
 // Starts one path from a light: a light by its share of the power, a point and a direction of it. It carries the flux
 //
-//   Φ = I(ω)/(P p(ω))   point, spot      E⊥·πR²/P   directional      π·L/(P/A) a side   emissive triangle        [W]
+//   Φ = I(ω)/(P p(ω))   point, spot      E⊥·πR²/P   directional      π·L/(P p(y)) a side   emissive triangle        [W]
 //
 // so that the flux of all paths is N times what all lights send out. Lights with a range send none: their light ends where no
 // path would. Only what falls within R of the scene's middle of a directional light counts.
@@ -66,17 +66,17 @@ Start start_at_triangle(Emitter emitter, vec2 place_random, vec4 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
     bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
-    vec2 place = point_of_triangle(place_random);
+    EmissivePoint point = draw_emissive_point(triangle, place_random);
     vec3 normal = front_normal(triangle);
     normal = both_sides && random.z < 0.5 ? -normal : normal;
     vec3 local = sample_cosine_hemisphere(random.xy);
-    vec3 radiance = emissive_radiance(triangle, material, place);
+    vec3 radiance = covered_radiance(triangle, material, point.place);
     float sides = both_sides ? 2.0 : 1.0;
-    vec3 position = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2;
+    vec3 position = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2;
     float cosine = max(local.z, 1e-6);
     return Start(
-        offset_ray_origin(position, normal), to_world(frame_around(normal), local), radiance * (PI * sides / triangle.light_density),
-        cosine, sides * PI / (push.light_paths * cosine), triangle.light_density);
+        offset_ray_origin(position, normal), to_world(frame_around(normal), local), radiance * (PI * sides / point.density),
+        cosine, sides * PI / (push.light_paths * cosine), point.density);
 }
 
 void main() {

@@ -11,7 +11,7 @@
 
 // Next-event estimation at one vertex: one point of one light, and what it would add if nothing is in between,
 //
-//   β · f(l, v) · L·(n_y·−l)⁺ / p_next        p_next = P(triangle)/A · d²/(n_y·−l), or P(light) with E⊥ in place of L
+//   β · f(l, v) · L·(n_y·−l)⁺ / p_next        p_next = P(triangle) p(y) · d²/(n_y·−l), or P(light) with E⊥ in place of L
 //
 // for the diffuse and the specular lobe apart, each weighted against the other ways of finding the same path (mis.glsl). The ray to the
 // light is left for `connect`.
@@ -54,15 +54,15 @@ LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
 LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
-    vec2 place = point_of_triangle(random);
-    vec3 way = triangle.origin + place.x * triangle.edge1 + place.y * triangle.edge2 - position_rs;
+    EmissivePoint point = draw_emissive_point(triangle, random);
+    vec3 way = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2 - position_rs;
     float distance2 = max(dot(way, way), 1e-30);
     vec3 to_light = way * inversesqrt(distance2);
     float cosine = -dot(front_normal(triangle), to_light);
     bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
-    float next = triangle.light_density * distance2 / max(cosine, 1e-9);
-    vec3 irradiance = cosine > 0.0 ? emissive_radiance(triangle, material, place) / next : vec3(0.0);
+    float next = point.density * distance2 / max(cosine, 1e-9);
+    vec3 irradiance = cosine > 0.0 ? covered_radiance(triangle, material, point.place) / next : vec3(0.0);
     return LightSample(
         to_light, sqrt(distance2), irradiance, next,
         cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);

@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/paths.glsl"
 #include "groups/scene_rays.glsl"
+#include "lib/emissive_cells.glsl"
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
 #include "path/mis.glsl"
@@ -169,7 +170,7 @@ bool meet_surface(uint path) {
             float weight = 1.0;
             if (push.depth > 0u && triangle.light_density > 0.0) {
                 float sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? 2.0 : 1.0;
-                float next = triangle.light_density * hit.x * hit.x / max(cosine, 1e-9);
+                float next = emissive_density(triangle, hit.yz) * hit.x * hit.x / max(cosine, 1e-9);
                 float others = next;
                 if (LIGHT_PATHS != 0u && push.depth > 1u) {
                     // state.w · density is C_k · p(z_k → z_{k−1}) of the vertex that the ray left.

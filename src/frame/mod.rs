@@ -12,6 +12,7 @@ pub(crate) mod geometry;
 pub(crate) mod inputs;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
+pub(crate) mod materials;
 pub(crate) mod octahedral;
 pub(crate) mod rays;
 pub(crate) mod scene_data;

@@ -6,9 +6,10 @@ use ash::vk;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::drawn_triangles::drawn_indices;
-use super::textures::{MaterialTextureSets, TextureArrays, slots_of};
+use super::materials::{cutouts_of, is_cut, texture_kinds, upload_materials};
+use super::textures::MaterialTextureSets;
 use crate::graph::hash_of;
-use crate::scene::{Alpha, Bounds, Instance, Material, Primitive, Scene, has_specular_lobe};
+use crate::scene::{Alpha, Bounds, Cutout, Instance, Material, Primitive, Scene, has_specular_lobe};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, Pipelines, VulkanError, buffer_with};
 
@@ -51,10 +52,11 @@ struct Place {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawnInstance {
     pub(crate) first_index: u32,
+    /// 0 if alpha leaves nothing of it.
     pub(crate) index_count: u32,
     pub(crate) vertex_offset: i32,
     pub(crate) material: usize,
-    /// The material reads a texture.
+    /// The programs that read textures draw it: its material has some, or alpha cuts it out point by point.
     pub(crate) textured: bool,
     /// Which kinds, as the shaders' bits.
     pub(crate) texture_kinds: u32,
@@ -83,6 +85,8 @@ pub(crate) struct SceneData {
     pub(crate) material_textures: Arc<Buffer>,
     pub(crate) material_key: u64,
     pub(crate) texture_sets: Option<MaterialTextureSets>,
+    /// Of each material where no vertex colours are.
+    cutouts: Vec<Cutout>,
 }
 
 impl SceneData {
@@ -103,10 +107,11 @@ impl SceneData {
         if data.material_key != material_key {
             let made = upload_materials(device, pipelines, scene)?;
             (data.materials, data.material_textures, data.texture_sets) = made;
+            data.cutouts = cutouts_of(scene);
             data.material_key = material_key;
         }
         if data.instance_key != instance_key {
-            (data.instances, data.drawn) = upload_instances(device, scene, &data.meshes, data.origin)?;
+            (data.instances, data.drawn) = upload_instances(device, scene, (&data.meshes, &data.cutouts), data.origin)?;
             data.area = surface_area(scene, &data.meshes);
             data.instance_key = instance_key;
         }
@@ -122,7 +127,8 @@ impl SceneData {
         let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) });
         let meshes = MeshData::upload(device, scene)?;
         let (materials, material_textures, texture_sets) = upload_materials(device, pipelines, scene)?;
-        let (instances, drawn) = upload_instances(device, scene, &meshes, bounds.center())?;
+        let cutouts = cutouts_of(scene);
+        let (instances, drawn) = upload_instances(device, scene, (&meshes, &cutouts), bounds.center())?;
         Ok(SceneData {
             identity: scene.identity(),
             origin: bounds.center(),
@@ -137,6 +143,7 @@ impl SceneData {
             material_textures,
             material_key,
             texture_sets,
+            cutouts,
         })
     }
 
@@ -318,7 +325,7 @@ fn surface_area(scene: &Scene, meshes: &MeshData) -> f64 {
 fn upload_instances(
     device: &Arc<Device>,
     scene: &Scene,
-    meshes: &MeshData,
+    (meshes, cutouts): (&MeshData, &[Cutout]),
     origin: DVec3,
 ) -> Result<(Arc<Buffer>, Vec<DrawnInstance>), VulkanError> {
     let mut records = Vec::new();
@@ -327,8 +334,13 @@ fn upload_instances(
         let place = meshes.places[instance.mesh.0][instance.primitive];
         let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
         records.push(instance_record(instance, primitive, place, origin));
-        let material = &scene.materials()[primitive.material.0];
-        drawn.push(drawn_instance(instance, place, primitive.material.0, material, origin));
+        let index = primitive.material.0;
+        let mut instance = drawn_instance(instance, place, index, &scene.materials()[index], origin);
+        match cutouts[index] {
+            Cutout::Nothing => instance.index_count = 0,
+            cutout => instance.textured |= is_cut(cutout, instance.masked, primitive),
+        }
+        drawn.push(instance);
     }
     let buffer = buffer_with(
         device,
@@ -394,55 +406,4 @@ fn drawn_instance(
         center_rs: to_render.transform_point3((low + high) * 0.5).as_vec3().to_array(),
         half_axes_rs: axes.map(|axis| axis.as_vec3().to_array()),
     }
-}
-
-type Materials = (Arc<Buffer>, Arc<Buffer>, Option<MaterialTextureSets>);
-
-fn upload_materials(device: &Arc<Device>, pipelines: &Pipelines, scene: &Scene) -> Result<Materials, VulkanError> {
-    let arrays = TextureArrays::upload(device, scene)?;
-    let records: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
-    let uses: Vec<types::MaterialTextures> =
-        scene.materials().iter().map(|material| arrays.uses_of(material)).collect();
-    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    let sets = if scene.textures().is_empty() {
-        None
-    } else {
-        Some(MaterialTextureSets::new(device, pipelines, scene, arrays)?)
-    };
-    let materials = buffer_with(device, "scene.materials", bytemuck::cast_slice(&records), usage)?;
-    // Programs that read textures alone bind the second list.
-    let uses = if sets.is_some() { uses } else { Vec::new() };
-    Ok((materials, buffer_with(device, "scene.material_textures", bytemuck::cast_slice(&uses), usage)?, sets))
-}
-
-pub(crate) fn material_record(material: &Material) -> types::Material {
-    types::Material {
-        base_color: material.base_color,
-        emissive: if material.unlit { [0.0; 3] } else { material.emissive },
-        metallic: material.metallic,
-        specular_color: material.specular_color,
-        specular: material.specular,
-        roughness: material.roughness,
-        ior: material.ior,
-        transmission: material.transmission,
-        normal_scale: material.normal_scale,
-        alpha_cutoff: match material.alpha {
-            Alpha::Opaque => -1.0,
-            Alpha::Mask { cutoff } => cutoff,
-        },
-        flags: u32::from(material.double_sided) | u32::from(material.unlit) << 1 | texture_kinds(material),
-        medium: packed_medium(material),
-    }
-}
-
-/// As `medium_of` of glsl/lib/scene.glsl takes it apart.
-fn packed_medium(material: &Material) -> [u32; 2] {
-    let [red, green, blue, closed] = material.medium();
-    let [red, green, blue] = [red, green, blue].map(|absorption| absorption.to_bits() >> 10 & 0x1F_FFFF);
-    [red | green << 21, green >> 11 | blue << 10 | u32::from(closed > 0.0) << 31]
-}
-
-/// The bits of glsl/lib/scene.glsl.
-pub(crate) fn texture_kinds(material: &Material) -> u32 {
-    (2..).zip(slots_of(material)).filter(|(_, texture)| texture.is_some()).map(|(bit, _)| 1 << bit).sum()
 }

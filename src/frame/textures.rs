@@ -48,9 +48,6 @@ impl TextureArrays {
                 made.arrays.push(image_with(device, &name, array_info(width, height, srgb, texels.len()), &texels)?);
             }
         }
-        if made.arrays.is_empty() {
-            return Ok(made);
-        }
         // What a material without a texture of some kind binds in its place.
         made.arrays.push(image_with(device, "scene.textures.none", array_info(1, 1, false, 1), &[&[255; 4]])?);
         Ok(made)

@@ -9,6 +9,7 @@ mod bvh;
 mod bvh_closed;
 mod bvh_speed;
 mod direct;
+mod emitter_coverage;
 mod estimates;
 mod flux;
 mod gather;

@@ -7,7 +7,7 @@ use super::request::{Estimator, ReferenceRequest};
 
 /// Counts the changes of how references are made; those of another version are not used. Raise it with every change that
 /// makes other samples of the same request: sampling, materials, lights, slots.
-pub const REFERENCE_VERSION: u32 = 2;
+pub const REFERENCE_VERSION: u32 = 3;
 
 /// A hash of scene, view, size, transport and seed: 64 hexadecimal digits. Names do not count.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

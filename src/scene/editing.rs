@@ -8,6 +8,7 @@ use super::mesh::Mesh;
 use super::world::{Node, Scene};
 use super::{CameraId, LightId, MaterialId, MeshId, SceneError, TextureId};
 use glam::{DAffine3, DMat3, DVec3};
+use std::sync::OnceLock;
 
 impl Scene {
     /// Adds a texture.
@@ -50,6 +51,12 @@ impl Scene {
         if old != *new {
             self.revisions.materials += 1;
             self.revisions.lights += u64::from(old.emits() || new.emits());
+            let primitives = self.meshes.iter().flat_map(|mesh| &mesh.primitives);
+            for (primitive, emission) in primitives.zip(self.emissions.iter_mut().flatten()) {
+                if primitive.material == id {
+                    emission.take();
+                }
+            }
         }
         Ok(())
     }
@@ -66,6 +73,7 @@ impl Scene {
                 return Err(self.invalid("mesh", &mesh.name, format!("primitive {index}: {fault}")));
             }
         }
+        self.emissions.push(mesh.primitives.iter().map(|_| OnceLock::new()).collect());
         self.meshes.push(mesh);
         Ok(MeshId(self.meshes.len() - 1))
     }

@@ -2,26 +2,16 @@
 //!
 //! All emissive triangles stand in a row, each as long as its power; the row is cut into equal intervals, and each emitter
 //! stands for one interval: its power and area are exactly those of the pieces of triangles in it. It is placed in the
-//! triangle at the interval's middle. The row is in the order of nodes, primitives and triangles, so moving, turning or
-//! scaling the scene moves its emitters along.
+//! triangle at the interval's middle, where a texture or alpha lets it shine. The row is in the order of nodes, primitives and
+//! triangles, so moving, turning or scaling the scene moves its emitters along.
 
-use super::mesh::{Instance, Primitive};
-use super::{Material, NodeId, Scene};
+use super::emission::TriangleEmission;
+use super::emission_points::EmissionPoints;
+use super::mesh::Instance;
+use super::{NodeId, Scene};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
-
-/// Barycentric coordinates at which an emissive texture is read to estimate its mean over a triangle: the centroid, the
-/// corners and the middles of the edges, those drawn inwards.
-const TEXTURE_POINTS: [[f32; 3]; 7] = [
-    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-    [0.8, 0.1, 0.1],
-    [0.1, 0.8, 0.1],
-    [0.1, 0.1, 0.8],
-    [0.45, 0.45, 0.1],
-    [0.45, 0.1, 0.45],
-    [0.1, 0.45, 0.45],
-];
 
 /// A small diffuse emitter that stands for part of the emissive surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,23 +25,28 @@ pub struct EmitterSample {
     /// Emitted power in W, linear RGB, both sides together. Radiant intensity at angle θ is `power · cos θ / π` for a one-sided
     /// emitter and half of it on each side of a two-sided one.
     pub power: [f32; 3],
-    /// Surface area in m² that it stands for.
+    /// Surface area in m² that it stands for, without what alpha cuts away or a texture leaves dark.
     pub area: f64,
     /// The node whose mesh holds the surface.
     pub node: NodeId,
 }
 
 /// An emissive triangle in world space.
-struct Emitter {
-    node: NodeId,
+struct Emitter<'a> {
+    instance: &'a Instance,
+    /// Number of the triangle in its primitive.
+    triangle: usize,
     /// The corners, counter-clockwise as seen from the front.
     corners: [DVec3; 3],
+    /// What shines of it, m².
     area: f64,
     two_sided: bool,
     power: [f64; 3],
+    /// Where it shines, if not everywhere alike.
+    uneven: Option<&'a TriangleEmission>,
 }
 
-impl Emitter {
+impl Emitter<'_> {
     /// Length in the row: the luminance of its power.
     fn weight(&self) -> f64 {
         0.2126 * self.power[0] + 0.7152 * self.power[1] + 0.0722 * self.power[2]
@@ -62,11 +57,19 @@ impl Emitter {
         (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
     }
 
-    fn point(&self, u: f64, v: f64) -> DVec3 {
+    fn point(&self, scene: &Scene, u: f64, v: f64) -> DVec3 {
         // Uniform in area (Osada et al. 2002).
         let [a, b, c] = self.corners;
-        let root = u.sqrt();
-        a * (1.0 - root) + b * (root * (1.0 - v)) + c * (root * v)
+        let Some(emission) = self.uneven else {
+            let root = u.sqrt();
+            return a * (1.0 - root) + b * (root * (1.0 - v)) + c * (root * v);
+        };
+        let (primitive, material) = (scene.primitive(self.instance), scene.material_of(self.instance));
+        let points = EmissionPoints::new(primitive, material, scene.textures(), true);
+        let surface = points.of_triangle(&primitive.indices[3 * self.triangle..3 * self.triangle + 3]);
+        let [b1, b2] = emission.place([u, v], |place| surface.radiance(place).is_some());
+        let [b1, b2] = if self.instance.flips_winding { [b2, b1] } else { [b1, b2] };
+        a * (1.0 - b1 - b2) + b * b1 + c * b2
     }
 }
 
@@ -75,17 +78,17 @@ impl Emitter {
 const MIDDLE: f64 = 0.5 - 1e-6;
 
 /// All emissive triangles in a row, each as long as its power, cut into `count` equal intervals.
-struct Row {
-    emitters: Vec<Emitter>,
+struct Row<'a> {
+    emitters: Vec<Emitter<'a>>,
     /// Where in the row each triangle ends.
     ends: Vec<f64>,
     /// Length of an interval.
     interval: f64,
 }
 
-impl Row {
-    fn new(emitters: Vec<Emitter>, count: usize) -> Row {
-        let running_sum = |sum: &mut f64, emitter: &Emitter| {
+impl Row<'_> {
+    fn new(emitters: Vec<Emitter<'_>>, count: usize) -> Row<'_> {
+        let running_sum = |sum: &mut f64, emitter: &Emitter<'_>| {
             *sum += emitter.weight();
             Some(*sum)
         };
@@ -119,7 +122,7 @@ impl Row {
 
     /// The triangle at an interval's middle, and a point in it. Where several middles fall into one triangle, their places in
     /// the row and a radical inverse make a Hammersley set, which covers the triangle evenly.
-    fn place(&self, sample: usize) -> (&Emitter, DVec3) {
+    fn place(&self, scene: &Scene, sample: usize) -> (&Emitter<'_>, DVec3) {
         let place = (sample as f64 + MIDDLE) * self.interval;
         let index = self.at(place);
         let (start, length) = (self.start(index), self.emitters[index].weight());
@@ -128,7 +131,7 @@ impl Row {
         let u = ((place - start) / length).clamp(0.0, 1.0);
         let v = radical_inverse(rank.max(0.0) as u32) + 0.5 / f64::from(neighbours.next_power_of_two());
         let emitter = &self.emitters[index];
-        (emitter, emitter.point(u, v.min(1.0)))
+        (emitter, emitter.point(scene, u, v.min(1.0)))
     }
 }
 
@@ -137,22 +140,21 @@ impl Scene {
     /// send out. Empty if nothing emits or `count` is 0. The same scene gives the same emitters.
     pub fn emitter_samples(&self, count: usize) -> Vec<EmitterSample> {
         let emissive: Vec<&Instance> = self.instances().iter().filter(|it| self.material_of(it).emits()).collect();
-        let emitters: Vec<Vec<Emitter>> =
-            emissive.par_iter().map(|it| emitters(self, it, self.primitive(it), self.material_of(it))).collect();
+        let emitters: Vec<Vec<Emitter<'_>>> = emissive.par_iter().map(|it| emitters(self, it)).collect();
         let row = Row::new(emitters.into_iter().flatten().collect(), count);
         if !(row.interval > 0.0 && row.interval.is_finite()) {
             return Vec::new();
         }
         let sample = |sample| {
             let (power, area) = row.flux(sample);
-            let (emitter, position) = row.place(sample);
+            let (emitter, position) = row.place(self, sample);
             EmitterSample {
                 position,
                 normal: emitter.normal(),
                 two_sided: emitter.two_sided,
                 power: power.map(|channel| channel as f32),
                 area,
-                node: emitter.node,
+                node: emitter.instance.node,
             }
         };
         (0..count).map(sample).collect()
@@ -160,31 +162,22 @@ impl Scene {
 }
 
 /// The emissive triangles of an instance that have area and power.
-fn emitters(scene: &Scene, instance: &Instance, primitive: &Primitive, material: &Material) -> Vec<Emitter> {
-    let texture = material.emissive_texture.and_then(|reference| {
-        let coordinates = primitive.texcoords[reference.texcoord as usize].as_ref()?;
-        Some((reference, coordinates, &scene.textures()[reference.texture.0]))
-    });
+fn emitters<'a>(scene: &'a Scene, instance: &'a Instance) -> Vec<Emitter<'a>> {
+    let (primitive, material, emission) =
+        (scene.primitive(instance), scene.material_of(instance), scene.emission(instance));
     let sides = if material.double_sided { 2.0 } else { 1.0 };
-    let all = primitive.indices.chunks_exact(3).zip(primitive.triangles()).map(|(vertices, triangle)| {
+    let all = primitive.triangles().enumerate().map(|(index, triangle)| {
         let mut corners = triangle.map(|corner| instance.world.transform_point3(Vec3::from(corner).as_dvec3()));
         if instance.flips_winding {
             corners.swap(1, 2);
         }
         let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() * 0.5;
-        let mut radiance = material.emissive;
-        if let Some((reference, coordinates, texture)) = texture {
-            let corner_coordinates: [[f32; 2]; 3] =
-                std::array::from_fn(|corner| reference.apply(coordinates[vertices[corner] as usize]));
-            let sum = TEXTURE_POINTS.iter().fold(Vec3::ZERO, |sum, weights| {
-                let point =
-                    [0, 1].map(|axis| (0..3).map(|corner| weights[corner] * corner_coordinates[corner][axis]).sum());
-                sum + Vec3::from_slice(&texture.texel(point)[..3])
-            });
-            radiance = (Vec3::from(radiance) * sum / TEXTURE_POINTS.len() as f32).to_array();
-        }
-        let power = radiance.map(|channel| f64::from(channel) * area * PI * sides);
-        Emitter { node: instance.node, corners, area, two_sided: material.double_sided, power }
+        let uneven = emission.of_triangle(index);
+        let power = uneven
+            .map_or(material.emissive, TriangleEmission::surely)
+            .map(|channel| f64::from(channel) * area * PI * sides);
+        let area = uneven.map_or(area, |emission| area * f64::from(emission.covered));
+        Emitter { instance, triangle: index, corners, area, two_sided: material.double_sided, power, uneven }
     });
     all.filter(|emitter| emitter.weight() > 0.0 && emitter.weight().is_finite()).collect()
 }

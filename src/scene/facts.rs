@@ -24,7 +24,7 @@ pub struct Facts {
     pub glossy: bool,
     /// Some surface transmits light.
     pub transmissive: bool,
-    /// Some surface emits.
+    /// Some surface emits at some point that alpha and its emissive texture leave.
     pub emissive: bool,
     /// Some mesh has vertex colours.
     pub vertex_colors: bool,
@@ -65,7 +65,7 @@ impl Scene {
             facts.normal_mapped |= material.normal_texture.is_some() && primitive.tangents.is_some();
             facts.textured |= material.textures().next().is_some();
             facts.alpha_masked |= material.alpha != Alpha::Opaque;
-            facts.emissive |= material.emits();
+            facts.emissive |= !facts.emissive && self.shines(instance);
             facts.diffuse |= has_diffuse_lobe(material);
             facts.specular |= has_specular_lobe(material);
             facts.glossy |= has_specular_lobe(material)

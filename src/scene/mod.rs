@@ -13,6 +13,10 @@
 //! | `camera_choice` | which camera the scene is seen from |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
+//! | `emission`, `emission_points`, `shining` | what alpha and textures leave of emissive surfaces |
+//! | `cutout` | what alpha leaves of a surface, material by material |
+//! | `triangle_cells` | a triangle cut into equal cells |
+//! | `sampling` | textures read as shaders read them |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
 //! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
 //! | `bvh` | the hierarchy that shaders trace rays through |
@@ -29,8 +33,11 @@ pub(crate) mod bvh;
 mod camera;
 mod camera_choice;
 mod content_hash;
+mod cutout;
 mod digest;
 mod editing;
+mod emission;
+mod emission_points;
 mod emitters;
 mod error;
 mod facts;
@@ -41,7 +48,10 @@ mod light;
 mod material;
 mod mesh;
 mod rays;
+mod sampling;
+mod shining;
 mod tangents;
+pub(crate) mod triangle_cells;
 mod world;
 
 pub use animation::{Animation, Channel, Interpolation, Property};
@@ -56,5 +66,7 @@ pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub use world::{Node, Revisions, Scene};
 
+pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;
+pub(crate) use emission::EmissiveCells;
 pub(crate) use facts::has_specular_lobe;

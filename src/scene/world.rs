@@ -4,6 +4,7 @@
 
 use super::animation::{Animation, Pose};
 use super::camera::Camera;
+use super::emission::Emission;
 use super::light::{Light, PlacedLight};
 use super::material::{Material, Texture};
 use super::mesh::{Bounds, Instance, Mesh, bounds_of};
@@ -12,8 +13,8 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Frames per second of [`Scene::set_frame`].
 const FRAME_RATE: f64 = 30.0;
@@ -89,6 +90,8 @@ pub struct Scene {
     pub(super) revisions: Revisions,
     identity: Identity,
     bounds: OnceLock<Option<Bounds>>,
+    /// Of each primitive of each mesh.
+    pub(super) emissions: Vec<Vec<OnceLock<Arc<Emission>>>>,
 }
 
 /// What decides how a scene looks, see [`Scene::content`].
@@ -215,6 +218,7 @@ impl Scene {
             revisions: _,
             identity: _,
             bounds: _,
+            emissions: _,
         } = self;
         Content { meshes, materials, textures, instances, lights: self.placed_lights(), sky: *sky }
     }

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use irradia::scene::{
-    Bounds, Camera, EmitterSample, Light, LightKind, Material, MaterialId, Mesh, Node, NodeId, Primitive, Projection,
-    Revisions, Scene, SceneError, Texture, TextureId, TextureRef, Wrap,
+    Alpha, Bounds, Camera, EmitterSample, Light, LightKind, Material, MaterialId, Mesh, Node, NodeId, Primitive,
+    Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef, Wrap,
 };
 use std::f64::consts::PI;
 
@@ -312,8 +312,60 @@ fn emissive_textures_weigh_the_power() {
     let material = scene.add_material(material).expect("it is sound");
     let mesh = scene.add_mesh(square(material)).expect("it is sound");
     scene.add_node(Node { mesh: Some(mesh), ..Node::default() }).expect("it is sound");
-    // A few texels a triangle are read, so the half is met roughly.
-    assert_close(total_power(&scene.emitter_samples(10))[0], 0.5 * PI, 0.15);
+    let samples = scene.emitter_samples(10);
+    assert_close(total_power(&samples)[0], 0.5 * PI, 2e-3);
+    assert_close(samples.iter().map(|sample| sample.area).sum(), 0.5, 2e-3);
+    assert!(samples.iter().all(|sample| sample.position.x <= 0.0), "they stand where it glows");
+}
+
+/// The glowing square alone, cut out by a texture of 16×16 texels of which some are opaque.
+fn cut_square(opaque: impl Fn(u32, u32) -> bool, nearest: bool) -> Scene {
+    let mut scene = Scene::empty("cut");
+    let alpha = |texel: u32| if opaque(texel % 16, texel / 16) { 255 } else { 0 };
+    let texture = Texture {
+        name: String::new(),
+        width: 16,
+        height: 16,
+        rgba8: (0..256).flat_map(|texel| [255, 255, 255, alpha(texel)]).collect(),
+        wrap: [Wrap::Clamp; 2],
+        nearest,
+        srgb: true,
+    };
+    let texture = TextureRef::new(scene.add_texture(texture).expect("it is sound"));
+    let material = Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_color_texture: Some(texture), ..glow() };
+    let material = scene.add_material(material).expect("it is sound");
+    let mesh = scene.add_mesh(square(material)).expect("it is sound");
+    scene.add_node(Node { mesh: Some(mesh), ..Node::default() }).expect("it is sound");
+    scene
+}
+
+#[test]
+fn what_alpha_cuts_away_emits_nothing() {
+    // Texels 3 to 6 across, 9 to 12 down. With a cutoff of one half a linear filter takes (ln 2 − 1/2)/2 of a texel at each corner.
+    let kept = |column: u32, row: u32| (3..7).contains(&column) && (9..13).contains(&row);
+    for (nearest, taken) in [(true, 0.0), (false, 2.0 * (2_f64.ln() - 0.5))] {
+        let samples = cut_square(kept, nearest).emitter_samples(32);
+        let area = (16.0 - taken) / 256.0;
+        assert_close(samples.iter().map(|sample| sample.area).sum(), area, 2e-3);
+        assert_close(total_power(&samples)[2], 4.0 * area * PI, 2e-3);
+        for sample in &samples {
+            let [x, y] = [sample.position.x + 0.5, 0.5 - sample.position.y].map(|place| 16.0 * place);
+            assert!((3.0..=7.0).contains(&x) && (9.0..=13.0).contains(&y), "{x} {y}");
+        }
+        let mean = samples.iter().map(|sample| sample.position).sum::<DVec3>() / 32.0;
+        assert!((mean - DVec3::new(5.0 / 16.0 - 0.5, 0.5 - 11.0 / 16.0, 0.0)).length() < 0.01, "{mean}");
+    }
+}
+
+#[test]
+fn a_surface_that_is_wholly_cut_is_no_emitter() {
+    let mut scene = cut_square(|_, _| false, true);
+    assert!(scene.emitter_samples(8).is_empty() && !scene.facts().emissive && !scene.facts().lit());
+    // It becomes one when its material is made opaque.
+    let opaque = Material { alpha: Alpha::Opaque, ..scene.materials()[0].clone() };
+    scene.set_material(MaterialId(0), opaque).expect("it exists");
+    assert!(scene.facts().emissive);
+    assert_close(total_power(&scene.emitter_samples(8))[0], PI, 1e-6);
 }
 
 /// Adds an axis-aligned box; its fronts look inwards or outwards.

@@ -3,8 +3,10 @@
 
 use std::f64::consts::PI;
 
+use super::alias_table::alias_table;
+use super::emissive_cells::CellTables;
 use super::triangles::TracedTriangle;
-use crate::scene::{LightKind, Material, PlacedLight};
+use crate::scene::{LightKind, PlacedLight, Scene};
 
 const TRIANGLE: u32 = 1 << 31;
 
@@ -14,6 +16,8 @@ pub(super) struct EmitterTable {
     pub(super) records: Vec<[u32; 4]>,
     /// For each triangle the density with which a point of it is drawn, 1/m²; 0 if none is.
     pub(super) light_densities: Vec<f32>,
+    /// Where on triangles such points are drawn.
+    pub(super) cells: CellTables,
     /// What all entries send out, W (luminance).
     pub(super) power: f64,
     /// The same for emissive triangles alone.
@@ -28,10 +32,10 @@ struct Entry {
     power: f64,
 }
 
-/// The table of a scene within a sphere of `radius` metres.
+/// The table of a scene within a sphere of `radius` metres; `triangles` are those of its instances, one after the other.
 pub(super) fn emitter_table(
+    scene: &Scene,
     triangles: &[TracedTriangle],
-    materials: &[Material],
     lights: &[PlacedLight],
     radius: f64,
 ) -> EmitterTable {
@@ -39,17 +43,29 @@ pub(super) fn emitter_table(
         .zip(lights)
         .map(|(what, light)| Entry { what, power: luminance(light.intensity) * extent_of(light, radius) })
         .collect();
-    let radiance: Vec<f64> = materials
-        .iter()
-        .map(|material| {
-            let sides = if material.double_sided { 2.0 } else { 1.0 };
-            if material.emits() { luminance(material.emissive) * sides * PI } else { 0.0 }
-        })
-        .collect();
-    entries.extend((0_u32..).zip(triangles).filter_map(|(index, triangle)| {
-        let power = radiance[triangle.material as usize] * triangle.area();
-        (power > 0.0 && power.is_finite()).then_some(Entry { what: TRIANGLE | index, power })
-    }));
+    let mut cells = CellTables::default();
+    let mut first = 0;
+    for instance in scene.instances() {
+        let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
+        let own = first..first + primitive.triangle_count();
+        first = own.end;
+        if !scene.shines(instance) {
+            continue;
+        }
+        let (material, emission) = (&scene.materials()[primitive.material.0], scene.emission(instance));
+        let sides = if material.double_sided { 2.0 } else { 1.0 };
+        for (number, index) in own.enumerate() {
+            let uneven = emission.of_triangle(number);
+            let radiance = uneven.map_or(material.emissive, |emission| emission.radiance);
+            let power = luminance(radiance) * sides * PI * triangles[index].area();
+            if power > 0.0 && power.is_finite() {
+                entries.push(Entry { what: TRIANGLE | u32::try_from(index).unwrap_or(0), power });
+                if let Some(held) = uneven.and_then(|emission| emission.cells.as_ref()) {
+                    cells.add(index, held, instance.flips_winding);
+                }
+            }
+        }
+    }
     entries.retain(|entry| entry.power > 0.0);
     let total: f64 = entries.iter().map(|entry| entry.power).sum();
     let mut light_densities = vec![0.0; triangles.len()];
@@ -57,11 +73,11 @@ pub(super) fn emitter_table(
         let index = (entry.what & !TRIANGLE) as usize;
         light_densities[index] = (entry.power / total / triangles[index].area()) as f32;
     }
-    let records = alias_table(&entries, total);
+    let records = records_of(&entries, total);
     entries.retain(|entry| entry.what & TRIANGLE != 0);
     let triangle_power = entries.iter().map(|entry| entry.power).sum();
-    let triangle_records = alias_table(&entries, triangle_power);
-    EmitterTable { records, light_densities, power: total, triangle_records, triangle_power }
+    let triangle_records = records_of(&entries, triangle_power);
+    EmitterTable { records, light_densities, cells, power: total, triangle_records, triangle_power }
 }
 
 /// What an intensity times this is power.
@@ -77,53 +93,12 @@ fn luminance(color: [f32; 3]) -> f64 {
     0.2126 * f64::from(color[0]) + 0.7152 * f64::from(color[1]) + 0.0722 * f64::from(color[2])
 }
 
-/// Vose 1991: every place holds one entry up to a threshold and another above it.
-fn alias_table(entries: &[Entry], total: f64) -> Vec<[u32; 4]> {
-    let count = entries.len();
-    let mut shares: Vec<f64> = entries.iter().map(|entry| entry.power / total * count as f64).collect();
-    let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..count).rev().partition(|&place| shares[place] < 1.0);
-    let mut records: Vec<[u32; 4]> = (0_u32..)
-        .zip(entries)
-        .map(|(place, entry)| [1.0_f32.to_bits(), place, entry.what, ((entry.power / total) as f32).to_bits()])
-        .collect();
-    while let (Some(poor), Some(&rich)) = (small.pop(), large.last()) {
-        records[poor][0] = (shares[poor] as f32).to_bits();
-        records[poor][1] = u32::try_from(rich).unwrap_or(0);
-        shares[rich] -= 1.0 - shares[poor];
-        if shares[rich] < 1.0 {
-            large.pop();
-            small.push(rich);
-        }
-    }
-    records
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_entry_is_drawn_by_its_power() {
-        let powers = [3.0, 0.5, 1.0, 7.5, 1e-3];
-        let entries: Vec<Entry> = (0..).zip(powers).map(|(what, power)| Entry { what, power }).collect();
-        let total: f64 = powers.iter().sum();
-        let records = alias_table(&entries, total);
-        let mut drawn = [0.0; 5];
-        for (place, record) in records.iter().enumerate() {
-            let threshold = f64::from(f32::from_bits(record[0]));
-            drawn[place] += threshold / 5.0;
-            drawn[record[1] as usize] += (1.0 - threshold) / 5.0;
-        }
-        for (drawn, power) in drawn.iter().zip(powers) {
-            assert!((drawn - power / total).abs() < 1e-7, "{drawn} {power}");
-        }
-    }
-
-    #[test]
-    fn equal_entries_keep_their_order() {
-        let entries: Vec<Entry> = (0..4).map(|what| Entry { what, power: 2.0 }).collect();
-        for (place, record) in alias_table(&entries, 8.0).iter().enumerate() {
-            assert!(record[0] == 1.0_f32.to_bits() || record[1] as usize == place);
-        }
-    }
+fn records_of(entries: &[Entry], total: f64) -> Vec<[u32; 4]> {
+    let powers: Vec<f64> = entries.iter().map(|entry| entry.power).collect();
+    let places = alias_table(&powers, total).into_iter().zip(entries);
+    places
+        .map(|((threshold, alias), entry)| {
+            [threshold.to_bits(), alias, entry.what, ((entry.power / total) as f32).to_bits()]
+        })
+        .collect()
 }

@@ -6,18 +6,17 @@ use std::sync::Arc;
 use ash::vk;
 use glam::DVec3;
 
-use super::cutout::{Cutout, cutout};
 use super::emitters::{EmitterTable, emitter_table};
 use super::sobol::sobol_points;
 use super::texels::Texels;
 use super::triangles::{TracedTriangle, flatten};
 use crate::frame::light_set::{punctual_light, shining_lights};
-use crate::frame::scene_data::{material_record, texture_kinds};
+use crate::frame::materials::{material_record, texture_kinds};
 use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Bounds, Facts, Material, Scene};
+use crate::scene::{Alpha, Bounds, Cutout, Facts, Material, Scene, cutout};
 use crate::shaders::groups::{SceneLights, SceneRays};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
@@ -35,6 +34,10 @@ pub(crate) struct TracedScene {
     /// The kinds of textures that any material reads, as the shaders' bits.
     pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
+    /// Some emissive surface is cut out by its alpha.
+    emissive_cutouts: bool,
+    /// Points of some emissive triangle are drawn cell by cell.
+    emissive_cells: bool,
     /// Some triangle is there at some of its points only.
     pub(crate) cutouts: bool,
     pub(crate) emitter_count: u32,
@@ -66,12 +69,16 @@ impl TracedScene {
         let facts = scene.facts();
         let (triangles, corners) = flatten(scene, origin, &facts)?;
         let lights = shining_lights(scene);
-        let EmitterTable { records: emitters, light_densities, power, triangle_records, triangle_power } =
-            emitter_table(&triangles, scene.materials(), &lights, radius);
-        let records: Vec<[[u32; 4]; 4]> =
-            triangles.iter().zip(&light_densities).map(|(triangle, density)| triangle.record(*density)).collect();
+        let EmitterTable { records: emitters, light_densities, cells, power, triangle_records, triangle_power } =
+            emitter_table(scene, &triangles, &lights, radius);
+        let cells_start = 4 * u32::try_from(triangles.len()).unwrap_or(0);
+        let mut records: Vec<[u32; 4]> = (0..)
+            .zip(triangles.iter().zip(&light_densities))
+            .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index, cells_start)))
+            .collect();
+        records.extend(&cells.records);
         let cutouts: Vec<Cutout> =
-            scene.materials().iter().map(|material| cutout(material, scene.textures(), &facts)).collect();
+            scene.materials().iter().map(|material| cutout(material, scene.textures(), facts.vertex_colors)).collect();
         let bvh_triangles: Vec<BvhTriangle> = triangles
             .iter()
             .map(|triangle| match cutouts[triangle.material as usize] {
@@ -127,6 +134,11 @@ impl TracedScene {
                 .materials()
                 .iter()
                 .any(|material| material.emits() && material.emissive_texture.is_some()),
+            emissive_cutouts: scene
+                .materials()
+                .iter()
+                .any(|material| material.emits() && material.alpha != Alpha::Opaque),
+            emissive_cells: !cells.records.is_empty(),
             cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
             ranged_lights: lights.iter().any(|light| light.range.is_some()),
@@ -180,6 +192,7 @@ impl TracedScene {
             vertex_colors: u32::from(self.facts.vertex_colors),
             normal_maps: u32::from(self.facts.normal_mapped),
             textures: self.texture_kinds,
+            emissive_cells: u32::from(self.emissive_cells),
         }
     }
 
@@ -192,6 +205,7 @@ impl TracedScene {
             emissive_triangles: bind("traced.emissive"),
             punctual_lights: bind("traced.lights"),
             emissive_textures: u32::from(self.emissive_textures),
+            emissive_cutouts: u32::from(self.emissive_cutouts),
         }
     }
 }

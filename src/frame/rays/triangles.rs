@@ -29,7 +29,8 @@ impl TracedTriangle {
         0.5 * edge1.cross(edge2).length()
     }
 
-    pub(super) fn record(&self, light_density: f32) -> [[u32; 4]; 4] {
+    /// `cells`: where on it points are drawn (`CellTables`).
+    pub(super) fn record(&self, light_density: f32, cells: [u32; 2]) -> [[u32; 4]; 4] {
         let [edge1, edge2] = self.edges();
         let words = |vector: Vec3, last: u32| [vector.x.to_bits(), vector.y.to_bits(), vector.z.to_bits(), last];
         let normals = self.normals.unwrap_or_default();
@@ -37,7 +38,7 @@ impl TracedTriangle {
             words(self.corners[0], self.material | if self.normals.is_none() { FLAT } else { 0 }),
             words(edge1, normals[0]),
             words(edge2, normals[1]),
-            [normals[2], light_density.to_bits(), 0, 0],
+            [normals[2], light_density.to_bits(), cells[0], cells[1]],
         ]
     }
 }

@@ -1,17 +1,17 @@
-//! What alpha leaves of a surface.
+//! What alpha leaves of a surface, material by material.
 
-use crate::scene::{Alpha, Facts, Material, Texture};
+use super::{Alpha, Material, Texture};
 
 /// What its alpha leaves of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cutout {
+pub(crate) enum Cutout {
     Everything,
     Nothing,
     /// A texture or vertex colours decide.
     PerPoint,
 }
 
-pub(super) fn cutout(material: &Material, textures: &[Texture], facts: &Facts) -> Cutout {
+pub(crate) fn cutout(material: &Material, textures: &[Texture], vertex_colors: bool) -> Cutout {
     let Alpha::Mask { cutoff } = material.alpha else { return Cutout::Everything };
     let (mut least, mut most) = (material.base_color[3], material.base_color[3]);
     if let Some(texture) = material.base_color_texture {
@@ -19,7 +19,7 @@ pub(super) fn cutout(material: &Material, textures: &[Texture], facts: &Facts) -
         least *= alphas().fold(1.0, f32::min);
         most *= alphas().fold(0.0, f32::max);
     }
-    if facts.vertex_colors {
+    if vertex_colors {
         least = 0.0;
     }
     match (least >= cutoff, most < cutoff) {
