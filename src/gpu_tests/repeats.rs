@@ -2,7 +2,7 @@
 
 use super::scenes::{builtin, request, settings};
 use super::session::Session;
-use crate::renderer::{ColorImage, Frame, FrameRequest, Slot, ToneMap};
+use crate::renderer::{ColorImage, Frame, FrameRequest, Preset, Settings, Slot, Technique, ToneMap};
 use crate::scene::Scene;
 
 fn bits(image: &ColorImage) -> Vec<u32> {
@@ -55,5 +55,43 @@ fn two_runs_give_the_same_bits() {
         assert_same(name, &first, &other.render(&second_scene, &settings, &everything(&second_scene)));
         let lit = first.slots[&Slot::Diffuse].pixels.iter().any(|pixel| pixel[0] > 0.0);
         assert!(lit, "{name} has diffuse light to compare");
+    }
+}
+
+/// Whatever memory is gone, the frame is made again to the bit: of one resource after the other, on every technique.
+#[test]
+fn a_resource_that_is_gone_is_made_again() {
+    let session = Session::open();
+    let small = |technique: Technique, changes: &[(&str, &str)]| {
+        let mut settings = Settings::new(technique, Preset::Draft);
+        let all = [("lights.resolution", "64"), ("rsm.vpls", "64"), ("vpl.count", "48"), ("photons.max", "300")];
+        for (key, value) in all.iter().chain(changes) {
+            settings.set(key, value).expect("within its range");
+        }
+        settings
+    };
+    let lists = [("photons.trace", "march"), ("photons.resolution", "32"), ("vpl.visibility", "ism")];
+    let mut ambient = small(Technique::Direct, &[("ambient.rays", "4")]);
+    ambient.methods.set(Slot::Diffuse, "ambient").expect("a method");
+    let all = [
+        ("textured", small(Technique::Rsm, &[])),
+        ("ring", small(Technique::Hybrid, &[("photons.downscale", "1")])),
+        ("ring", small(Technique::Hybrid, &lists)),
+        ("cornell-point", small(Technique::Path, &[("path.spp", "1")])),
+        ("cornell-point", ambient),
+    ];
+    for (name, settings) in all {
+        let scene = builtin(name);
+        let camera = scene.camera_view(None).expect("a view");
+        let request = request([24, 16], camera, &Slot::ALL);
+        let mut renderer = session.renderer(&settings);
+        let first = renderer.render(&scene, &request).expect("a frame");
+        let names = renderer.store.names();
+        assert!(names.len() > 3, "{names:?}");
+        for gone in names {
+            renderer.store.evict(&gone);
+            let again = renderer.render(&scene, &request).expect("a frame");
+            assert_same(&format!("{name} without {gone}"), &first, &again);
+        }
     }
 }

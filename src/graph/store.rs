@@ -120,6 +120,21 @@ impl Store {
         }
     }
 
+    /// Names of all memory that is held.
+    #[cfg(test)]
+    pub(crate) fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.images.keys().chain(self.buffers.keys()).cloned().collect();
+        names.sort();
+        names
+    }
+
+    /// Returns the memory behind a name, with what it holds.
+    #[cfg(test)]
+    pub(crate) fn evict(&mut self, name: &str) {
+        self.images.remove(name);
+        self.buffers.remove(name);
+    }
+
     /// Lets the memory behind two names change places.
     pub(super) fn swap(&mut self, one: &str, other: &str) {
         if let [Some(a), Some(b)] = self.images.get_disjoint_mut([one, other]) {

@@ -31,7 +31,7 @@ pub struct Renderer {
     pub(super) lights: LightSet,
     /// Held while something sends rays.
     pub(super) traced: Option<Arc<TracedScene>>,
-    pub(super) store: Store,
+    pub(crate) store: Store,
     /// Held once an estimator fills a slot.
     estimates: Option<Estimates>,
 }
