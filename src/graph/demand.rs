@@ -143,6 +143,9 @@ fn walk(
 
 #[cfg(test)]
 mod tests {
+    use rand_pcg::Pcg32;
+    use rand_pcg::rand_core::Rng;
+
     use super::*;
     use Verdict::{NotAsked, Run, Unchanged};
 
@@ -268,5 +271,87 @@ mod tests {
         assert_eq!(again(&passes, &[0, 2], &stored), [Run, Run, Run], "2 must not mix the new order with the old one");
         assert_eq!(again(&passes, &[2], &stored), [Unchanged, Unchanged, Run], "the old one fits itself");
         assert_eq!(again(&passes, &[0], &stored), [Run, Unchanged, Unchanged]);
+    }
+
+    fn below(random: &mut Pcg32, end: usize) -> usize {
+        random.next_u32() as usize % end
+    }
+
+    /// A frame of random passes over few places, as the graph declares them: what a pass reads is the content of its time, what it makes is named by
+    /// all that it reads. `settings` tells passes apart whose settings have changed.
+    fn random_frame(random: &mut Pcg32, settings: &[u64]) -> Vec<Needs> {
+        const PLACES: usize = 5;
+        let mut content = [0_u64; PLACES];
+        let mut passes = Vec::new();
+        for (index, setting) in settings.iter().enumerate() {
+            let reads: Vec<usize> = (0..below(random, 3)).map(|_| below(random, PLACES)).collect();
+            let reads: Vec<usize> = reads.into_iter().filter(|&place| content[place] != 0).collect();
+            let mut writes = vec![below(random, PLACES)];
+            writes.extend((below(random, 3) == 0).then(|| below(random, PLACES)));
+            writes.dedup();
+            let versions = |places: &[usize], content: &[u64]| -> Vec<Version> {
+                places.iter().map(|&place| Version { place: (place, 0), key: content[place] }).collect()
+            };
+            let reads = versions(&reads, &content);
+            for &place in &writes {
+                let keys: Vec<u64> = reads.iter().map(|read| read.key).collect();
+                content[place] = super::super::key::hash_of(&(index, setting, keys, place)).max(1);
+            }
+            let unordered = below(random, 4) == 0;
+            passes.push(Needs { writes: versions(&writes, &content), reads, unordered });
+        }
+        passes
+    }
+
+    /// Whatever was asked for before and whatever is gone since: each pass that runs finds what it needs, nothing mixes two orders, and what is wanted is
+    /// there at the end.
+    #[test]
+    fn random_frames_find_what_they_need() {
+        let random = &mut Pcg32::new(1, 1);
+        let mut skipped = 0;
+        for _ in 0..3000 {
+            let shape = random.clone();
+            let mut settings = vec![0_u64; 1 + below(random, 9)];
+            // What memory holds: a content, and the runs of unordered passes that it came of.
+            let mut memory: HashMap<Place, (u64, HashMap<u64, u64>)> = HashMap::new();
+            let mut run_number = 0_u64;
+            for _ in 0..6 {
+                let passes = random_frame(&mut shape.clone(), &settings);
+                let wanted: Vec<Version> = {
+                    let all: HashMap<Place, u64> =
+                        passes.iter().flat_map(|pass| &pass.writes).map(|write| (write.place, write.key)).collect();
+                    let mut all: Vec<Version> = all.into_iter().map(|(place, key)| Version { place, key }).collect();
+                    all.sort_by_key(|version| version.place);
+                    all.into_iter().filter(|_| below(random, 2) == 0).collect()
+                };
+                let verdicts = decide(&passes, &wanted, |place| memory.get(&place).map(|(key, _)| *key));
+                for (pass, _) in passes.iter().zip(&verdicts).filter(|(_, verdict)| **verdict == Run) {
+                    run_number += 1;
+                    let mut orders: HashMap<u64, u64> = HashMap::new();
+                    for read in &pass.reads {
+                        let (key, came_of) = memory.get(&read.place).expect("what it reads was made");
+                        assert_eq!(*key, read.key, "it reads what it was declared to read");
+                        for (order, run) in came_of {
+                            assert_eq!(*orders.entry(*order).or_insert(*run), *run, "two orders of one list meet");
+                        }
+                    }
+                    if pass.unordered {
+                        orders.insert(pass.writes[0].key, run_number);
+                    }
+                    for write in &pass.writes {
+                        memory.insert(write.place, (write.key, orders.clone()));
+                    }
+                }
+                skipped += verdicts.iter().filter(|verdict| **verdict == Unchanged).count();
+                assert!(wanted.iter().all(|wish| memory[&wish.place].0 == wish.key), "what is wanted is there");
+                // Settings change, and memory goes.
+                let change = below(random, 2 * settings.len());
+                settings.iter_mut().skip(change).take(1).for_each(|setting| *setting += 1);
+                if below(random, 3) == 0 {
+                    memory.remove(&(below(random, 5), 0));
+                }
+            }
+        }
+        assert!(skipped > 1000, "{skipped} passes were skipped");
     }
 }
