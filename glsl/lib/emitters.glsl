@@ -27,7 +27,7 @@ Emitter pick_emitter(usamplerBuffer emitters, uint count, float random) {
 }
 
 // Uniform in area (Osada et al. 2002): barycentric coordinates of corners 1 and 2.
-vec2 point_of_triangle(vec2 random) {
+vec2 place_in_triangle(vec2 random) {
     float root = sqrt(random.x);
     return vec2(root * (1.0 - random.y), root * random.y);
 }

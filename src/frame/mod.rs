@@ -8,6 +8,7 @@ pub(crate) mod compose;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;
 pub(crate) mod inputs;
+pub(crate) mod instances;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod octahedral;

@@ -10,6 +10,7 @@ mod bvh_closed;
 mod bvh_speed;
 mod direct;
 mod estimates;
+mod far_things;
 mod flux;
 mod gather;
 mod graph;

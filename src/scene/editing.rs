@@ -2,12 +2,14 @@
 //! the rest of the engine need not check again.
 
 use super::camera::Camera;
+use super::extent::Shape;
 use super::light::{Light, LightSpec};
 use super::material::{Material, Texture};
 use super::mesh::Mesh;
 use super::world::{Node, Scene};
 use super::{CameraId, LightId, MaterialId, MeshId, SceneError, TextureId};
 use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
 
 impl Scene {
     /// Adds a texture.
@@ -66,7 +68,9 @@ impl Scene {
                 return Err(self.invalid("mesh", &mesh.name, format!("primitive {index}: {fault}")));
             }
         }
+        self.shapes.push(mesh.primitives.par_iter().map(Shape::of).collect());
         self.meshes.push(mesh);
+        self.revisions.geometry += 1;
         Ok(MeshId(self.meshes.len() - 1))
     }
 

@@ -11,6 +11,7 @@
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `ids` | the indices that name them |
 //! | `camera_choice` | which camera the scene is seen from |
+//! | `extent`, `bulk` | where it is and how far it reaches, whatever specks lie far from it |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
@@ -25,6 +26,7 @@
 mod animation;
 mod auto_view;
 mod builtin;
+mod bulk;
 pub(crate) mod bvh;
 mod camera;
 mod camera_choice;
@@ -33,6 +35,7 @@ mod digest;
 mod editing;
 mod emitters;
 mod error;
+mod extent;
 mod facts;
 mod gltf;
 mod ids;
@@ -57,4 +60,5 @@ pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub use world::{Node, Revisions, Scene};
 
 pub(crate) use digest::Digest;
+pub(crate) use extent::{Extent, Shape};
 pub(crate) use facts::has_specular_lobe;

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::frame::octahedral::pack_direction;
+use crate::scene::bvh::BvhTriangle;
 use crate::scene::{Facts, Primitive, Scene};
 use crate::vulkan::VulkanError;
 
@@ -23,6 +24,18 @@ impl TracedTriangle {
         [self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]]
     }
 
+    /// The largest of its corners' distances from a point, metres.
+    pub(super) fn farthest(&self, point: DVec3) -> f64 {
+        self.corners.iter().map(|corner| corner.as_dvec3().distance(point)).fold(0.0, f64::max)
+    }
+
+    /// Its distance from a point, at least, metres.
+    pub(super) fn nearest(&self, point: DVec3) -> f64 {
+        let middle = self.corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() / 3.0;
+        let radius = self.corners.iter().map(|corner| corner.as_dvec3().distance(middle)).fold(0.0, f64::max);
+        middle.distance(point) - radius
+    }
+
     /// m²
     pub(super) fn area(&self) -> f64 {
         let [edge1, edge2] = self.edges().map(Vec3::as_dvec3);
@@ -37,7 +50,12 @@ impl TracedTriangle {
             words(self.corners[0], self.material | if self.normals.is_none() { FLAT } else { 0 }),
             words(edge1, normals[0]),
             words(edge2, normals[1]),
-            [normals[2], light_density.to_bits(), 0, 0],
+            [
+                normals[2],
+                light_density.to_bits(),
+                BvhTriangle { corners: self.corners.map(|corner| corner.to_array()), flags: 0 }.plane().to_bits(),
+                0,
+            ],
         ]
     }
 }
