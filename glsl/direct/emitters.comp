@@ -26,11 +26,12 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
     EmissivePoint point = draw_emissive_point(triangle, random.yz);
-    vec3 target = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2;
+    vec3 front = front_normal(triangle);
+    vec3 target = point_of_triangle(triangle, point.place, front);
     vec3 way = target - receiver.surface.position_rs;
     float distance2 = max(dot(way, way), 1e-30);
     vec3 to_light = way * inversesqrt(distance2);
-    float cosine = -dot(front_normal(triangle), to_light);
+    float cosine = -dot(front, to_light);
     cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : cosine;
     vec3 direction = to_local(scattering.frame, to_light);
     if (min(cosine, min(direction.z, dot(receiver.surface.geometric_normal, to_light))) <= 0.0) {
@@ -42,7 +43,7 @@ vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {
     vec3 reflected = diffuse_part.value * power_heuristic(density, diffuse_part.density)
                      + specular_part.value * power_heuristic(density, specular_part.density);
     vec3 light = reflected * covered_radiance(triangle, material, point.place) / density;
-    if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, target - receiver.ray_origin, 0.9999)) {
+    if (max3(light) <= 0.0 || is_occluded(receiver.ray_origin, target - receiver.ray_origin, 1.0)) {
         return vec3(0.0);
     }
     return light;

@@ -14,6 +14,9 @@ layout(constant_id = 35) const uint TEXTURES = 0u;
 // 1: points of some emissive triangles are drawn cell by cell (lib/emissive_cells.glsl).
 layout(constant_id = 36) const uint EMISSIVE_CELLS = 0u;
 
+// 1: triangles are so much smaller than the largest coordinates that rounding is bounded triangle by triangle (lib/bvh.glsl); 0: by the scene's extent.
+layout(constant_id = 37) const uint WIDE = 0u;
+
 layout(set = 0, binding = 32) uniform usamplerBuffer bvh_nodes;          // lib/bvh.glsl
 layout(set = 0, binding = 33) uniform samplerBuffer bvh_triangles;
 layout(set = 0, binding = 34) uniform usamplerBuffer triangles;          // lib/traced_scene.glsl

@@ -14,6 +14,8 @@ layout(push_constant, scalar) uniform Push {
     uint instance_count;
     uint triangle_count;
     uint block_count;
+    float reach;      // m, around the middle of the scene
+    vec3 middle_rs;
 } push;
 
 shared float sums[BLOCK_TRIANGLES];
@@ -25,7 +27,10 @@ void main() {
         float area = 0.0;
         if (triangle < push.triangle_count) {
             mat3 edges = corner_and_edges(triangle, push.instance_count);
-            area = 0.5 * length(cross(edges[1], edges[2]));
+            // What is farther away than all that matters gets no points.
+            vec3 middle = edges[0] + (edges[1] + edges[2]) / 3.0;
+            float radius = max(length(edges[0] - middle), max(length(edges[0] + edges[1] - middle), length(edges[0] + edges[2] - middle)));
+            area = distance(middle, push.middle_rs) - radius <= push.reach ? 0.5 * length(cross(edges[1], edges[2])) : 0.0;
         }
         sums[self] = area;
         barrier();

@@ -13,6 +13,13 @@ const uint NO_TRIANGLE = 0xffffffffu;
 // A group of children waits at each level at most; the host builds no deeper tree.
 const int BVH_STACK_SIZE = 32;
 
+// Bounds the rounding of where a triangle is met, 16 units in the last place (meets_triangle).
+const float HIT_SLACK = 1.0 / 1048576.0;
+// Where a ray to a surface ends, over its length.
+const float END = 0.9999;
+// Share of the way to a hit that this may be before the triangle's plane is asked.
+const float LARGEST_SLACK = 1.0 / 4096.0;
+
 // Bounds the rounding of a box's distances, as shares of the distance and of the way to the node's corner.
 const float BVH_DISTANCE_SLACK = 1.000001;
 const float BVH_CORNER_SLACK = 4e-7;
@@ -33,6 +40,7 @@ struct PreparedRay {
     vec3 shear_x;
     vec3 shear_y;
     vec3 shear_z;
+    float slowness;  // lengths of the direction for a meter along its largest axis
 };
 
 PreparedRay prepare_ray(vec3 origin, vec3 direction) {
@@ -48,6 +56,7 @@ PreparedRay prepare_ray(vec3 origin, vec3 direction) {
     ray.backwards = lessThan(moving, vec3(0.0));
     ray.octant = (ray.backwards.x ? 0u : 4u) | (ray.backwards.y ? 0u : 2u) | (ray.backwards.z ? 0u : 1u);
     vec3 inverse = ray.inverse_direction;
+    ray.slowness = 1.0 / largest;
     if (size.x >= largest) {
         ray.shear_x = vec3(-direction.y * inverse.x, 1.0, 0.0);
         ray.shear_y = vec3(-direction.z * inverse.x, 0.0, 1.0);
@@ -64,11 +73,33 @@ PreparedRay prepare_ray(vec3 origin, vec3 direction) {
     return ray;
 }
 
+// Along the ray to the plane of a triangle, and what rounding may make of that. The plane's distance from the origin is known (corner 2's fourth
+// component), so that only the start's own coordinates round, and the normal, by as much as the corner is sharp.
+vec2 plane_distance(vec3 corner0, vec3 corner1, vec4 corner2, PreparedRay ray) {
+    vec3 edge1 = corner1 - corner0;
+    vec3 edge2 = corner2.xyz - corner0;
+    vec2 inverse_lengths = vec2(
+        1.0 / max(abs(edge1.x), max(abs(edge1.y), abs(edge1.z))), 1.0 / max(abs(edge2.x), max(abs(edge2.y), abs(edge2.z))));
+    vec3 normal = cross(edge1 * inverse_lengths.x, edge2 * inverse_lengths.y);
+    float sharpness = inversesqrt(dot(normal, normal));
+    normal *= sharpness;
+    vec3 size = abs(ray.origin);
+    float inverse_slope = 1.0 / dot(normal, 1.0 / ray.inverse_direction);
+    float rounding = HIT_SLACK * (max(size.x, max(size.y, size.z)) + abs(corner2.w)) * (1.0 + sharpness);
+    return vec2(corner2.w - dot(normal, ray.origin), rounding) * vec2(inverse_slope, abs(inverse_slope));
+}
+
 // Whether the ray meets the triangle at `place` of the tree's order nearer than `hit`, which it then replaces.
 //
 // All triangles at a corner shear it to the same point, and the signs of `weights` are exact or 0 there (products round
 // monotonically, so none may be fused): of the triangles around an edge or a corner a ray cannot miss all.
-bool meets_triangle(uint place, PreparedRay ray, inout Hit hit) {
+//
+// Of a hit that is nearer than rounding tells nobody knows whether it lies before or behind the ray's start: it is none, so that a ray does not
+// meet the surface that it leaves (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., 6.8.2-3). With M the largest coordinate of the
+// corners as seen from the start, S what the shear leaves of it across the ray, Z the depths that the triangle covers, and det twice its area
+// across the ray, that is u·(M + M·S·Z/det), where u is HIT_SLACK. Where that is too much of
+// the way, the triangle is a large one beside the ray, and its plane knows better (plane_distance).
+bool meets_triangle(uint place, PreparedRay ray, bool to_surface, inout Hit hit) {
     int texel = 3 * int(place);
     vec4 corner0 = texelFetch(bvh_triangles, texel);
     vec4 corner1 = texelFetch(bvh_triangles, texel + 1);
@@ -81,9 +112,27 @@ bool meets_triangle(uint place, PreparedRay ray, inout Hit hit) {
     precise vec3 weights = x.zxy * y.yzx - y.zxy * x.yzx;
     float least = min(weights.x, min(weights.y, weights.z));
     float greatest = max(weights.x, max(weights.y, weights.z));
-    vec3 shares = weights / (weights.x + weights.y + weights.z);
-    float distance = dot(shares, vec3(dot(a, ray.shear_z), dot(b, ray.shear_z), dot(c, ray.shear_z)));
-    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > 0.0 && distance < hit.distance;
+    float inverse = 1.0 / (weights.x + weights.y + weights.z);
+    vec3 shares = weights * inverse;
+    vec3 z = vec3(dot(a, ray.shear_z), dot(b, ray.shear_z), dot(c, ray.shear_z));
+    float distance = dot(shares, z);
+    float end = to_surface ? hit.distance * END : hit.distance;
+    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > 0.0 && distance < end;
+    // How near the ray's start rounding may matter, a power of two by the triangle's size (src/scene/bvh.rs).
+    float doubtful = uintBitsToFloat(floatBitsToUint(corner1.w) & 0x7f800000u) * ray.slowness;
+    if (WIDE != 0u && meets && distance < doubtful) {
+        vec3 seen = max(abs(a), max(abs(b), abs(c)));
+        vec3 across = max(abs(x), abs(y));
+        float most = max(seen.x, max(seen.y, seen.z)) * HIT_SLACK;
+        float depths = max(z.x, max(z.y, z.z)) - min(z.x, min(z.y, z.z));
+        float slack = most * (ray.slowness + max(across.x, max(across.y, across.z)) * depths * abs(inverse));
+        if (slack > LARGEST_SLACK * distance) {
+            vec2 known = plane_distance(corner0.xyz, corner1.xyz, corner2, ray);
+            distance = known.y < slack ? known.x : distance;
+            slack = min(slack, known.y);
+        }
+        meets = distance > slack && distance < end;
+    }
 #ifdef BVH_ACCEPTS_HITS
     if (meets && (floatBitsToUint(corner1.w) & 1u) != 0u) {
         meets = accepts_hit(floatBitsToUint(corner0.w), shares.yz);
@@ -150,7 +199,7 @@ Hit traverse(vec3 origin, vec3 direction, float t_max, bool any) {
         while (triangles != 0u) {
             uint place = uint(findMSB(triangles));
             triangles ^= 1u << place;
-            if (meets_triangle(links.y + place, ray, hit) && any) {
+            if (meets_triangle(links.y + place, ray, any, hit) && any) {
                 return hit;
             }
         }
@@ -166,7 +215,7 @@ Hit closest_hit(vec3 origin, vec3 direction, float t_max) {
     return traverse(origin, direction, t_max, false);
 }
 
-// Whether any triangle lies on the ray nearer than `t_max` lengths of its direction.
+// Whether any triangle lies on the ray nearer than `t_max` lengths of its direction. A surface that the ray ends on does not count.
 bool is_occluded(vec3 origin, vec3 direction, float t_max) {
     return traverse(origin, direction, t_max, true).triangle != NO_TRIANGLE;
 }

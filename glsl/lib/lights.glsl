@@ -28,10 +28,10 @@ struct Light {
 
 struct LightView {
     mat4 view_projection;   // render space to the clip space of the view's rectangle
-    vec3 origin_rs;
-    float near;             // metres along `forward`
+    vec3 origin_rs;         // orthographic: in the far plane
+    float near;             // perspective: metres along `forward`
     vec3 right;             // unit
-    float depth_range;      // orthographic: far − near; perspective, which is infinite: 0
+    float depth_range;      // orthographic: from the near plane to the far one; perspective, which is infinite: 0
     vec3 down;              // unit
     float tangent_step;     // between texels: tangent units (perspective) or metres (orthographic)
     vec3 forward;           // unit
@@ -145,9 +145,19 @@ vec3 ray_of_tangent(LightView view, vec2 tangent) {
     return is_orthographic(view) ? view.forward : view.forward + tangent.x * view.right + tangent.y * view.down;
 }
 
-// Metres along `forward`, for a depth above 0.
+// Metres along `forward` from the view's origin, for a depth above 0; orthographic: below 0.
 float linear_depth(LightView view, float depth) {
-    return is_orthographic(view) ? view.near + (1.0 - depth) * view.depth_range : view.near / depth;
+    return is_orthographic(view) ? -depth * view.depth_range : view.near / depth;
+}
+
+// The same from where light comes from: the perspective view's origin, or an orthographic view's near plane.
+float depth_from_light(LightView view, float depth) {
+    return is_orthographic(view) ? (1.0 - depth) * view.depth_range : view.near / depth;
+}
+
+// And back.
+float depth_of_linear(LightView view, float z) {
+    return is_orthographic(view) ? -z / view.depth_range : view.near / z;
 }
 
 vec3 position_of_texel(LightView view, vec2 tangent, float depth) {

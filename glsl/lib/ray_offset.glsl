@@ -4,16 +4,14 @@
 
 #include "groups/scene_rays.glsl"
 
-// Moves a point of a surface, computed from its triangle's corners, to the side that the normal points to, so far that rays from
-// there do not meet the surface again: 256 units in the last place (Wächter & Binder, Ray Tracing Gems, ch. 6). Their constants
-// for points near the origin are replaced by a share of the scene's extent, so that no unit of length matters.
+// Moves a point of a surface to the side that the normal points to, so far that rounding does not leave it on the other one: 16 units in the last place of its
+// own coordinates (Wächter & Binder, Ray Tracing Gems, ch. 6). What rounding of far corners does is known where a triangle is met (lib/bvh.glsl). Their constants for points near the origin are replaced by the last word of the hierarchy, a length by the size of what matters
+// and of its finer triangles (src/frame/rays/traced_scene.rs), so that no unit of length matters.
 vec3 offset_ray_origin(vec3 position, vec3 normal) {
-    uint exponents = texelFetch(bvh_nodes, 0).w;
-    uvec3 axes = uvec3(exponents, exponents >> 8, exponents >> 16) & 255u;
-    // A step of the root's grid is 1/255 to 1/128 of the extent.
-    float step = uintBitsToFloat(max(axes.x, max(axes.y, axes.z)) << 23);
     vec3 size = abs(position);
-    return position + normal * (exp2(-16.0) * max(8.0 * step, max(size.x, max(size.y, size.z))));
+    float largest = max(size.x, max(size.y, size.z));
+    float least = uintBitsToFloat(texelFetch(bvh_nodes, textureSize(bvh_nodes) - 1).x);
+    return position + normal * max(least, exp2(-20.0) * largest);
 }
 
 #endif

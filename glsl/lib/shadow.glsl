@@ -18,7 +18,7 @@ const float SURFACE_DEPTH_TEXELS = 4.0;
 // Every texel is compared with the depth that the receiver's own plane has at that texel. Reversed depth is linear over
 // the plane of the view for any planar receiver: with v the receiver seen from the view and n its normal,
 //   perspective   depth(t) = near·n·(forward + t.x·right + t.y·down)/(n·v)    ∂depth/∂t = near·(n·right, n·down)/(n·v)
-//   orthographic  depth(t) = 1 − (z(t) − near)/range                          ∂depth/∂t = (n·right, n·down)/(n·forward)/range
+//   orthographic  depth(t) = −z(t)/range                                      ∂depth/∂t = (n·right, n·down)/(n·forward)/range
 // A flat receiver is then free of acne at every slope without a bias, and nothing detaches from its shadow.
 // What remains, rounding and dents between facets, is met by moving the receiver along its normal by a share of the texel
 // that grows with the slope (Holbert 2011). Slopes are capped at a cosine of 0.02.
@@ -40,7 +40,7 @@ float light_visibility(sampler2D light_depth, LightView view, vec3 position_rs, 
     float z = dot(receiver, view.forward);
     float depth;
     if (orthographic) {
-        depth = 1.0 - (z - view.near) / view.depth_range;
+        depth = depth_of_linear(view, z);
         gradient /= min(dot(normal, view.forward), -0.02) * view.depth_range;
     } else {
         // Nothing nearer than the near plane is in the map, so nothing there is in shadow.

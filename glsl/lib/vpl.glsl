@@ -28,6 +28,14 @@ Vpl unpack_vpl(vec4 first, vec4 second) {
     return Vpl(first.xyz, first.w, second.rgb, unpack_direction_in_float_unnormalized(second.w));
 }
 
+// Where rays from or to a VPL start or end, on the side that its normal points to. A light view knows a surface to a small share of a texel, and a
+// VPL's disc has at least one: a thousandth of its radius. 64 units in the last place more are for its own rounding.
+vec3 lifted_vpl(Vpl vpl) {
+    vec3 size = abs(vpl.position_rs);
+    float lift = sqrt(vpl.area_over_pi) * exp2(-10.0) + exp2(-18.0) * max(size.x, max(size.y, size.z));
+    return vpl.position_rs + lift * normalize(vpl.normal);
+}
+
 // The factor of `strength` in the irradiance at x, with D = y − x and ω = D/|D|:
 //
 //   E(x) = Φ/π · (n_y·−ω)⁺ (n_x·ω)⁺ / (D² + A/π)      written as      strength · (n_y·−D)⁺ (n_x·D)⁺ / (D²(D² + A/π))

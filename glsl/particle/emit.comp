@@ -14,12 +14,18 @@
 //   Φ = I(ω)/(P p(ω))   point, spot      E⊥·πR²/P   directional      π·L/(P p(y)) a side   emissive triangle        [W]
 //
 // so that the flux of all paths is N times what all lights send out. Lights with a range send none: their light ends where no
-// path would. Only what falls within R of the scene's middle of a directional light counts.
+// path would. Of a directional light only what falls within R of the scene's middle counts (particle/parallel_light.glsl).
 
 layout(local_size_x = 64) in;
 
+// 1: surfaces lie beyond R, which may hide a directional light.
+layout(constant_id = 0) const uint FAR_SURFACES = 0u;
+
+#include "lib/cutouts.glsl"
+#include "lib/bvh.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/emissive_points.glsl"
+#include "particle/parallel_light.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
@@ -27,7 +33,8 @@ layout(push_constant, scalar) uniform Push {
     uint path_count;     // in this wave
     uint seed;           // of the sample
     float light_paths;   // N: light paths a sample
-    float radius;        // R
+    float radius;        // R, m
+    vec3 middle;         // of the scene
 } push;
 
 struct Start {
@@ -43,13 +50,13 @@ Start start_at_punctual(Emitter emitter, vec4 random) {
     Light light = load_light(punctual_lights, emitter.number);
     Frame frame = frame_around(light.direction);
     if (light.kind == LIGHT_DIRECTIONAL) {
-        float radius = push.radius * sqrt(random.x);
-        float azimuth = 2.0 * PI * random.y;
-        vec3 across = radius * (cos(azimuth) * frame.tangent + sin(azimuth) * frame.bitangent);
+        vec3 start = point_of_disc(frame, push.middle, push.radius, random.xy);
         float area = PI * push.radius * push.radius;
-        return Start(
-            across - 1.001 * push.radius * light.direction, light.direction, light.intensity * (area / emitter.probability), -1.0,
-            area / push.light_paths, 1e38);
+        vec3 flux = light.intensity * (area / emitter.probability);
+        if (FAR_SURFACES != 0u && is_occluded(start, -light.direction, 3e38)) {
+            flux = vec3(0.0);
+        }
+        return Start(start, light.direction, flux, -1.0, area / push.light_paths, 1e38);
     }
     // Uniform in the cone, or over the sphere.
     float depth = light.kind == LIGHT_SPOT ? 1.0 + light.spot_offset / light.spot_scale : 2.0;
@@ -72,7 +79,7 @@ Start start_at_triangle(Emitter emitter, vec2 place_random, vec4 random) {
     vec3 local = sample_cosine_hemisphere(random.xy);
     vec3 radiance = covered_radiance(triangle, material, point.place);
     float sides = both_sides ? 2.0 : 1.0;
-    vec3 position = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2;
+    vec3 position = point_of_triangle(triangle, point.place, front_normal(triangle));
     float cosine = max(local.z, 1e-6);
     return Start(
         offset_ray_origin(position, normal), to_world(frame_around(normal), local), radiance * (PI * sides / point.density),

@@ -24,12 +24,14 @@ layout(set = 0, binding = 2) buffer QueueBlock { uint connections[]; };
 
 #include "lib/ray_offset.glsl"
 #include "lib/emissive_points.glsl"
+#include "particle/parallel_light.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
     uint depth;           // vertices before this one
     float light_paths;    // N of mis.glsl
     float disc_area;      // m², across which light paths of a directional light start
+    vec3 middle;          // of the scene
 } push;
 
 struct LightSample {
@@ -40,6 +42,11 @@ struct LightSample {
     float emission_density; // of light paths that leave the light here, at the vertex across the beam: 1/m²
 };
 
+// Of light paths of a directional light, 1/m².
+float beam_density(Light light, vec3 position_rs) {
+    return is_behind_disc(position_rs - push.middle, light.direction, INVERSE_PI * push.disc_area) ? 1.0 / push.disc_area : 0.0;
+}
+
 LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
     Light light = load_light(punctual_lights, emitter.number);
     Illumination illumination = illuminate(light, position_rs);
@@ -47,7 +54,7 @@ LightSample sample_punctual(Emitter emitter, vec3 position_rs) {
     float distance = directional ? 3e38 : length(light.position_rs - position_rs);
     float cone = light.kind == LIGHT_SPOT ? 0.5 * (1.0 + light.spot_offset / light.spot_scale) : 1.0;
     // Light paths leave out lights with a range (particle/emit.comp).
-    float emission = light.range > 0.0 ? 0.0 : directional ? 1.0 / push.disc_area : 0.25 * INVERSE_PI / (max(cone, 1e-9) * max(distance * distance, 1e-30));
+    float emission = light.range > 0.0 ? 0.0 : directional ? beam_density(light, position_rs) : 0.25 * INVERSE_PI / (max(cone, 1e-9) * max(distance * distance, 1e-30));
     return LightSample(illumination.to_light, distance, illumination.irradiance / emitter.probability, 0.0, emission);
 }
 
@@ -55,10 +62,11 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
     Triangle triangle = load_triangle(triangles, emitter.number);
     Material material = load_material(materials, triangle.material);
     EmissivePoint point = draw_emissive_point(triangle, random);
-    vec3 way = triangle.origin + point.place.x * triangle.edge1 + point.place.y * triangle.edge2 - position_rs;
+    vec3 front = front_normal(triangle);
+    vec3 way = point_of_triangle(triangle, point.place, front) - position_rs;
     float distance2 = max(dot(way, way), 1e-30);
     vec3 to_light = way * inversesqrt(distance2);
-    float cosine = -dot(front_normal(triangle), to_light);
+    float cosine = -dot(front, to_light);
     bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
     float next = point.density * distance2 / max(cosine, 1e-9);
@@ -127,7 +135,7 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     bool far = light.distance > 1e37;
     vec3 way = far ? light.to_light : vertex.position_rs + light.to_light * light.distance - origin;
     float distance = length(way);
-    connection[0] = vec4(origin, far ? light.distance : distance * (emitter.is_triangle ? 0.9999 : 1.0));
+    connection[0] = vec4(origin, far ? light.distance : distance);
     connection[1] = vec4(way / max(distance, 1e-30), 0.0);
     return max3(light_of_lobes[0]) + max3(light_of_lobes[1]) > 0.0;
 }

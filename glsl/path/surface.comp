@@ -124,8 +124,8 @@ bool meet_surface(uint path) {
     }
     Triangle triangle = load_triangle(triangles, index);
     vec3 weights = vec3(1.0 - hit.y - hit.z, hit.yz);
-    vec3 position = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2;
     vec3 face = front_normal(triangle);
+    vec3 position = point_of_hit(triangle, hit.yz, face, ray.origin, hit.x * ray.direction);
     bool front = dot(face, ray.direction) < 0.0;
     vec3 geometric_normal = front ? face : -face;
     float cosine = abs(dot(face, ray.direction));

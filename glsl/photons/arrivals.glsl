@@ -12,10 +12,10 @@
 
 #include "photons/records.glsl"
 
-// Of a point whose position was computed in floats: 256 units in the last place, of its own size or of a tenth of the scene's.
-float gap_at(vec3 position_rs, float radius) {
+// Of a point that was computed in floats from a ray of length `way`: 64 units in the last place of what is larger, that or its coordinates.
+float gap_at(vec3 position_rs, float way) {
     vec3 size = abs(position_rs);
-    return exp2(-16.0) * max(0.1 * radius, max(size.x, max(size.y, size.z)));
+    return exp2(-18.0) * max(way, max(size.x, max(size.y, size.z)));
 }
 
 #endif

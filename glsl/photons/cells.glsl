@@ -28,7 +28,7 @@ float depth_of_plane(LightView view, vec2 middle, vec2 tangent, float depth, vec
     }
     float slope = dot(normal, ray_of_tangent(view, tangent));
     float z = dot(normal, position_of_texel(view, middle, depth) - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
-    return is_orthographic(view) ? 1.0 - (z - view.near) / view.depth_range : view.near / (z > 0.0 ? z : 1e37);
+    return depth_of_linear(view, is_orthographic(view) || z > 0.0 ? z : 1e37);
 }
 
 struct CellPoint {

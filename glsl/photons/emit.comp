@@ -167,7 +167,7 @@ void main() {
     vec3 flux = incident_flux(load_light(lights, view.light), view, vec2(texel) + 0.5, depth);
     Material material = load_material(drawn_materials, layer.y & ~SURFACE_FRONT);
     bool front = (layer.y & SURFACE_FRONT) != 0u;
-    flux *= transmittance_behind(material, front, length(ray_of_tangent(view, middle)) * linear_depth(view, depth));
+    flux *= transmittance_behind(material, front, length(ray_of_tangent(view, middle)) * depth_from_light(view, depth));
     flux *= place.weight / float(of_block);
 
     bool is_closed = medium_of(material).is_closed;
@@ -178,7 +178,7 @@ void main() {
     arrivals[3u * photon + 1u] = uvec4(floatBitsToUint(normalize(ray)), bits);
     arrivals[3u * photon + 2u] = uvec4(floatBitsToUint(flux), number);
     // Views round the corners of what they draw to 1/256 of a texel.
-    float gap = gap_at(position, push.radius) + texel_width / 64.0;
+    float gap = gap_at(position, 0.0) + texel_width / 64.0;
     // One photon to the next.
     float spacing = exp2(float(level)) * inversesqrt(float(of_block));
     vec3 face = unpack_direction(surface.y);

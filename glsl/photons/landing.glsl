@@ -36,6 +36,7 @@ struct Landing {
     PhotonRay photon;   // its flux and way at arrival, its origin the point of arrival
     vec3 normal;        // geometric, on the arriving side
     vec3 shading_normal;
+    float way;          // from where it came, m
     Beam beam;          // at the surface
     bool may_diffuse;   // some texture that is not known here decides about its diffuse lobe
     float spread;       // standard deviation in one dimension that the lobe gives it there, m
@@ -53,6 +54,7 @@ Landing arrive(uint index, uvec4 hit) {
     landing.normal = landing.front ? face : -face;
     landing.shading_normal = landing.normal;
     landing.may_diffuse = false;
+    landing.way = distance;
     landing.photon.origin_rs += landing.photon.direction * distance;
     Beam beam = load_beam(beams, int(RAY_BEAM_TEXELS * index));
     beam.origin_u += distance * beam.direction_u;
@@ -72,7 +74,8 @@ Landing arrive(uint index, uvec4 hit) {
 Ellipse footprint(Landing landing) {
     float emitted = float(max(texelFetch(choice, int(CHOICE_PHOTONS)).x, 1u));
     float most = 0.25 * push.radius;
-    float least = 1e-6 * push.radius;
+    vec3 size = abs(landing.photon.origin_rs);
+    float least = max(exp2(-20.0) * max(size.x, max(size.y, size.z)), 1e-12 * push.radius);
     if (push.beams_decide == 0u) {
         float cosine = max(-dot(landing.normal, landing.photon.direction), 1e-3);
         float radius = clamp(push.disc_scale * inversesqrt(emitted * cosine) * landing.photon.travelled, least, most);
@@ -127,6 +130,6 @@ void land(bool met, Landing landing, MaterialPoint point) {
             pack_direction(landing.shading_normal), pack_direction(landing.normal), pack_root_color(lobes.f0), pack_root_color(transmission));
         surfaces[2u * place + 1u] = uvec4(
             packUnorm2x16(vec2(lobes.f90, lobes.roughness)), floatBitsToUint(relative_ior),
-            floatBitsToUint(gap_at(photon.origin_rs, push.radius)), pack_direction(landing.shading_normal));
+            floatBitsToUint(gap_at(photon.origin_rs, landing.way)), pack_direction(landing.shading_normal));
     }
 }

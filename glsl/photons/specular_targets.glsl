@@ -25,7 +25,7 @@ void write_specular_texel(uint material_index, Material material, MaterialPoint 
     vec2 tangent = tangent_of_texel(view, gl_FragCoord.xy);
     vec3 ray = ray_of_tangent(view, tangent);
     float stretch = length(ray);
-    float distance = stretch * linear_depth(view, gl_FragCoord.z);
+    float distance = stretch * depth_from_light(view, gl_FragCoord.z);
     bool lit = all(greaterThanEqual(tangent, view.lit_low)) && all(lessThan(tangent, view.lit_high));
     Light light = load_light(lights, view.light);
     vec3 incident = radiant_intensity(light, ray / stretch) * (view.tangent_step * view.tangent_step);

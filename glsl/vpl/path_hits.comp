@@ -17,7 +17,6 @@ layout(set = 0, binding = 1) writeonly buffer Hits { vec4 hits[]; };
 
 layout(push_constant, scalar) uniform Push { Bounce bounce; } push;
 
-#include "lib/ray_offset.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 
@@ -35,7 +34,7 @@ void main() {
         float azimuth = 2.0 * PI * random.y;
         vec3 local = vec3(radius * cos(azimuth), radius * sin(azimuth), sqrt(max(1.0 - random.x, 1e-7)));
         vec3 normal = normalize(vpl.normal);
-        vec3 origin = offset_ray_origin(vpl.position_rs + vpl_rays.shift, normal) + normal * vpl_rays.offset;
+        vec3 origin = lifted_vpl(vpl) + vpl_rays.shift;
         Hit hit = closest_hit(origin, to_world(frame_around(normal), local), 3e38);
         found = vec4(hit.distance, hit.barycentric, uintBitsToFloat(hit.triangle));
     }

@@ -100,9 +100,9 @@ void main() {
         Vpl vpl = unpack_vpl(vpls[2u * parent], vpls[2u * parent + 1u]);
         vec3 flux = vpl.strength * (PI * length(vpl.normal) * float(push.bounce.parent_count) / float(push.bounce.child_count));
         Triangle triangle = load_triangle(triangles, index);
-        vec3 position_rs = triangle.origin + hit.y * triangle.edge1 + hit.z * triangle.edge2 - vpl_rays.shift;
         vec3 face = front_normal(triangle);
-        vec3 normal = dot(face, vpl.position_rs - position_rs) < 0.0 ? -face : face;
+        vec3 position_rs = point_of_triangle(triangle, hit.yz, face) - vpl_rays.shift;
+        vec3 normal = dot(face, lifted_vpl(vpl) - position_rs) < 0.0 ? -face : face;
         float area = min(OVERLAP / max(density_of_paths(position_rs, normal), 1e-30), PI * vpl_rays.radius * vpl_rays.radius);
         position = pack_vpl_position(position_rs, area);
         strength = pack_vpl_strength(flux * albedo_at(triangle, vec3(1.0 - hit.y - hit.z, hit.yz)), normal);

@@ -11,7 +11,7 @@
 
 bool ray_sees(Vpl vpl, vec3 position_rs, vec3 normal) {
     vec3 origin = pixel_ray_origin(position_rs, vpl_rays.shift, normal);
-    vec3 target = vpl.position_rs + vpl_rays.shift + normalize(vpl.normal) * vpl_rays.offset;
+    vec3 target = lifted_vpl(vpl) + vpl_rays.shift;
     return !is_occluded(origin, target - origin, 1.0);
 }
 

@@ -56,7 +56,7 @@ int place_of_flux(ivec2 origin, ivec2 low, ivec2 high, int axis, float target) {
 
 vec3 position_at(LightView view, vec2 texel) {
     float depth = texelFetch(light_depth, ivec2(texel), 0).x;
-    return position_of_texel(view, tangent_of_texel(view, texel), max(depth, 1e-6));
+    return position_of_texel(view, tangent_of_texel(view, texel), max(depth, 1e-30));
 }
 
 // 0 or 1: across which the cell is longer, on the surface that the view sees through the middles of its edges.
@@ -101,10 +101,10 @@ bool surface_goes_on(LightView view, vec3 position_rs, vec3 normal, float radius
         float z = dot(way, view.forward);
         vec2 tangent = vec2(dot(way, view.right), dot(way, view.down)) / (is_orthographic(view) ? 1.0 : max(z, 1e-20));
         ivec2 texel = ivec2(clamp((tangent - view.tangent_origin) / view.tangent_step, vec2(-1.0), vec2(view.rect_size)));
-        if (z > view.near && all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, view.rect_size))) {
+        if ((is_orthographic(view) || z > view.near) && all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, view.rect_size))) {
             texel += view.rect_origin;
             float depth = texelFetch(light_depth, texel, 0).x;
-            vec3 seen = position_of_texel(view, tangent_of_texel(view, vec2(texel) + 0.5), max(depth, 1e-6));
+            vec3 seen = position_of_texel(view, tangent_of_texel(view, vec2(texel) + 0.5), max(depth, 1e-30));
             goes_on = depth > 0.0 && dot(normal, seen - position_rs) > -0.1 * radius;
         }
     }

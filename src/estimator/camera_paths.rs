@@ -111,6 +111,7 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
             depth,
             light_paths: view.pixel_count(),
             disc_area: (std::f64::consts::PI * scene.radius * scene.radius) as f32,
+            middle: scene.middle_rs.as_vec3().to_array(),
         },
     };
     graph.pass("path/light", light).threads_indirect(paths.alive, 0);

@@ -102,6 +102,7 @@ pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, vi
         scene_rays: paths.rays.clone(),
         scene_lights: paths.lights.clone(),
         new_paths: paths.started(),
+        far_surfaces: u32::from(scene.far_surfaces),
         push: shaders::EmitPush {
             emitter_count: scene.emitter_count,
             first_path: swarm.first_path,
@@ -109,6 +110,7 @@ pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, vi
             seed: swarm.seed,
             light_paths: view.pixel_count(),
             radius: scene.radius as f32,
+            middle: scene.middle_rs.as_vec3().to_array(),
         },
     };
     graph.pass("particle/emit", emit).note("paths", u64::from(swarm.path_count)).threads([swarm.path_count, 1, 1]);

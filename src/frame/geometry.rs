@@ -123,9 +123,10 @@ impl DrawView {
     fn sees(&self, drawn: &DrawnInstance) -> bool {
         self.planes.iter().all(|[a, b, c, d]| {
             let along = |v: [f32; 3]| a * v[0] + b * v[1] + c * v[2];
-            let reach: f32 = drawn.half_axes_rs.iter().map(|&axis| along(axis).abs()).sum();
+            let reach: f32 = drawn.whole.half_axes_rs.iter().map(|&axis| along(axis).abs()).sum();
             // A little more than the box, for the rounding of its corners.
-            along(drawn.center_rs) + d + reach * 1.0001 + 1e-6 * (along(drawn.center_rs).abs() + d.abs()) >= 0.0
+            along(drawn.whole.center_rs) + d + reach * 1.0001 + 1e-6 * (along(drawn.whole.center_rs).abs() + d.abs())
+                >= 0.0
         })
     }
 }

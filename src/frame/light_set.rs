@@ -19,6 +19,12 @@ const EMITTER: u32 = 3;
 /// A spot wider than this half angle (tangent 3.7) is seen through a cube instead of one stretched view.
 const WIDEST_CONE: f64 = 75.5 * PI / 180.0;
 
+/// The near plane of a light's view over its distance from the origin, 512 units in the last place: of what is nearer rounding may decide whether it lies before
+/// the light or behind it. Depth is reversed and float32, near/z, so that a near plane costs no precision however close it is.
+const NEAR: f64 = 1.0 / 32768.0;
+/// The same over the scene's radius, for a light that stands on the origin.
+const LEAST_NEAR: f64 = 1e-9;
+
 /// What stands for the lights, and how large their views are, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct LightDetail {
@@ -53,7 +59,8 @@ impl LightSet {
     ) -> LightSet {
         let revisions = scene.revisions();
         // Directional views are fitted to the geometry.
-        let key = hash_of(&(scene.identity(), revisions.geometry, revisions.lights, detail));
+        let place = data.origin.to_array().map(f64::to_bits);
+        let key = hash_of(&(scene.identity(), revisions.geometry, revisions.lights, detail, place));
         if held.key == key {
             return held;
         }
@@ -76,16 +83,12 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// The nearest thing that a light still lights, as a share of the scene's size.
-    fn near(&self) -> f64 {
-        self.data.radius * 1e-4
-    }
-
-    fn source(&self, origin_rs: DVec3, resolution: u32, intensity: [f32; 3]) -> ViewSource {
+    /// `extent`: of the surface that the view stands on, metres.
+    fn source(&self, origin_rs: DVec3, extent: f64, resolution: u32, intensity: [f32; 3]) -> ViewSource {
         let strength = f64::from(intensity.into_iter().fold(0.0, f32::max));
         ViewSource {
             origin_rs,
-            near: self.near(),
+            near: (origin_rs.length().max(extent) * NEAR).max(LEAST_NEAR * self.data.radius),
             resolution: resolution.next_multiple_of(16),
             strength,
             light: self.lights.len() as u32,
@@ -102,7 +105,7 @@ impl Builder<'_> {
     fn add_punctual(&mut self, scene: &Scene) {
         for placed in shining_lights(scene) {
             let axes = axes_of(scene.world_transform(placed.node).matrix3);
-            let source = self.source(placed.position - self.data.origin, self.detail.resolution, placed.intensity);
+            let source = self.source(placed.position - self.data.origin, 0.0, self.detail.resolution, placed.intensity);
             let light = punctual_light(&placed, self.data.origin);
             let shapes = match placed.kind {
                 LightKind::Point => ViewShape::cube(source, axes),
@@ -128,7 +131,7 @@ impl Builder<'_> {
                 let normal = sample.normal * *side;
                 let intensity = sample.power.map(|power| (f64::from(power) / (PI * sides.len() as f64)) as f32);
                 let position = sample.position - self.data.origin;
-                let source = self.source(position, self.detail.emitter_resolution, intensity);
+                let source = self.source(position, sample.area.sqrt(), self.detail.emitter_resolution, intensity);
                 let light = types::Light {
                     position_rs: position.as_vec3().to_array(),
                     kind: EMITTER,
@@ -172,25 +175,29 @@ impl Builder<'_> {
                 range: 0.0,
                 view_count: 0,
             };
-            let source = self.source(DVec3::ZERO, self.detail.resolution, intensity);
+            let source = self.source(DVec3::ZERO, 0.0, self.detail.resolution, intensity);
             let shapes = self.parallel(scene, source, axes_around(direction, DMat3::IDENTITY));
             self.add(light, shapes);
         }
     }
 
-    /// A parallel view that just holds the scene. Every vertex counts, not the corners of a box: a scene that turns
-    /// together with its light keeps its view.
+    /// A parallel view that just holds what matters of the scene. Every vertex counts, not the corners of a box: a scene that turns
+    /// together with its light keeps its view. What is farther away casts its shadow into the view, and gets none.
     fn parallel(&mut self, scene: &Scene, source: ViewSource, axes: DMat3) -> Vec<ViewShape> {
         let origin = self.data.origin;
         let corners = self.corners.get_or_insert_with(|| vertices_of(scene, origin));
-        let to_view = axes.transpose();
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let middle = self.data.middle_rs;
+        let (to_view, within) = (axes.transpose(), (self.data.reach * (1.0 + 1e-9)).powi(2));
+        let (mut low, mut high, mut start) = (DVec3::INFINITY, DVec3::NEG_INFINITY, f64::INFINITY);
         for corner in corners {
             let point = to_view * *corner;
-            low = low.min(point);
-            high = high.max(point);
+            start = start.min(point.z);
+            if corner.distance_squared(middle) <= within {
+                low = low.min(point);
+                high = high.max(point);
+            }
         }
-        if low.x > high.x { Vec::new() } else { ViewShape::parallel(source, axes, low, high) }
+        if low.x > high.x { Vec::new() } else { ViewShape::parallel(source, axes, [low, high], start) }
     }
 }
 

@@ -10,6 +10,7 @@ mod drawn_triangles;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;
 pub(crate) mod inputs;
+pub(crate) mod instances;
 pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod materials;

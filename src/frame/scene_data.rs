@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DMat3, DVec3};
 
 use super::drawn_triangles::drawn_indices;
-use super::materials::{cutouts_of, is_cut, texture_kinds, upload_materials};
+pub(crate) use super::instances::DrawnInstance;
+use super::instances::{Place, area_of, surface_area, upload_instances};
+use super::materials::{cutouts_of, upload_materials};
 use super::textures::MaterialTextureSets;
 use crate::graph::hash_of;
-use crate::scene::{Alpha, Bounds, Cutout, Instance, Material, Primitive, Scene, has_specular_lobe};
-use crate::shaders::types;
+use crate::scene::{Cutout, Extent, Primitive, Scene, Shape};
 use crate::vulkan::{Buffer, Device, Pipelines, VulkanError, buffer_with};
 
 /// A vertex stream that some primitives may lack; a scene in which all lack it binds one element with stride 0.
@@ -22,7 +23,7 @@ pub(crate) struct Stream {
 
 /// All vertex and index data of a scene, one buffer a stream.
 pub(crate) struct MeshData {
-    /// f32x3, metres in object space.
+    /// f32x3, metres in object space, from the primitive's own centre ([`Shape`](crate::scene::Shape)).
     pub(crate) positions: Stream,
     /// snorm16x4.
     pub(crate) normals: Stream,
@@ -35,46 +36,21 @@ pub(crate) struct MeshData {
     /// u32.
     pub(crate) indices: Arc<Buffer>,
     /// Where each primitive of each mesh lies: `places[mesh][primitive]`.
-    places: Vec<Vec<Place>>,
-}
-
-#[derive(Clone, Copy)]
-struct Place {
-    first_index: u32,
-    index_count: u32,
-    vertex_offset: i32,
-    bounds: [[f32; 3]; 2],
-    /// In object space, m².
-    area: f64,
-}
-
-/// One instance as the host needs it to draw: what to draw, with which material, and where it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DrawnInstance {
-    pub(crate) first_index: u32,
-    /// 0 if alpha leaves nothing of it.
-    pub(crate) index_count: u32,
-    pub(crate) vertex_offset: i32,
-    pub(crate) material: usize,
-    /// The programs that read textures draw it: its material has some, or alpha cuts it out point by point.
-    pub(crate) textured: bool,
-    /// Which kinds, as the shaders' bits.
-    pub(crate) texture_kinds: u32,
-    pub(crate) masked: bool,
-    /// The material reflects or transmits specularly.
-    pub(crate) specular: bool,
-    /// Corners of its box in render space, for culling.
-    pub(crate) center_rs: [f32; 3],
-    pub(crate) half_axes_rs: [[f32; 3]; 3],
+    pub(super) places: Vec<Vec<Place>>,
 }
 
 /// Everything of a scene that passes read, with a key for each part.
 pub(crate) struct SceneData {
     identity: u64,
+    /// Where render space has its zero: of the scene at rest, see [`Extent`](crate::scene::Extent).
     pub(crate) origin: DVec3,
-    /// Half the diagonal of the scene's bounds when it was first seen, metres; the length that tolerances scale with.
+    /// Of what matters, in render space.
+    pub(crate) middle_rs: DVec3,
+    /// Of what matters around it at rest, metres; what lengths that nobody asked for are a share of.
     pub(crate) radius: f64,
-    /// Of all surfaces, m².
+    /// How far from the middle what matters reaches now, metres.
+    pub(crate) reach: f64,
+    /// Of the surfaces within reach, m².
     pub(crate) area: f64,
     pub(crate) meshes: MeshData,
     mesh_key: u64,
@@ -100,7 +76,9 @@ impl SceneData {
         let revisions = scene.revisions();
         let mesh_key = hash_of(&(scene.identity(), scene.meshes().len()));
         let material_key = hash_of(&(scene.identity(), revisions.materials));
-        let instance_key = hash_of(&(scene.identity(), revisions.geometry, revisions.materials));
+        let Extent { origin, middle, radius } = scene.extent();
+        let place = origin.to_array().map(f64::to_bits);
+        let instance_key = hash_of(&(scene.identity(), revisions.geometry, revisions.materials, place));
         let Some(mut data) = held.filter(|data| data.identity == scene.identity() && data.mesh_key == mesh_key) else {
             return SceneData::new(device, pipelines, scene, [mesh_key, material_key, instance_key]);
         };
@@ -111,8 +89,10 @@ impl SceneData {
             data.material_key = material_key;
         }
         if data.instance_key != instance_key {
-            (data.instances, data.drawn) = upload_instances(device, scene, (&data.meshes, &data.cutouts), data.origin)?;
-            data.area = surface_area(scene, &data.meshes);
+            (data.origin, data.middle_rs, data.radius, data.reach) = (origin, middle - origin, radius, scene.reach());
+            let meshes = (&data.meshes.places[..], &data.cutouts[..]);
+            (data.instances, data.drawn) = upload_instances(device, scene, meshes, data.reach)?;
+            data.area = surface_area(scene, &data.meshes.places, data.reach);
             data.instance_key = instance_key;
         }
         Ok(data)
@@ -124,16 +104,18 @@ impl SceneData {
         scene: &Scene,
         [mesh_key, material_key, instance_key]: [u64; 3],
     ) -> Result<SceneData, VulkanError> {
-        let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) });
+        let (Extent { origin, middle, radius }, reach) = (scene.extent(), scene.reach());
         let meshes = MeshData::upload(device, scene)?;
         let (materials, material_textures, texture_sets) = upload_materials(device, pipelines, scene)?;
         let cutouts = cutouts_of(scene);
-        let (instances, drawn) = upload_instances(device, scene, (&meshes, &cutouts), bounds.center())?;
+        let (instances, drawn) = upload_instances(device, scene, (&meshes.places, &cutouts), reach)?;
         Ok(SceneData {
             identity: scene.identity(),
-            origin: bounds.center(),
-            radius: bounds.radius().max(1e-9),
-            area: surface_area(scene, &meshes),
+            origin,
+            middle_rs: middle - origin,
+            radius,
+            reach,
+            area: surface_area(scene, &meshes.places, reach),
             meshes,
             mesh_key,
             instances,
@@ -193,8 +175,13 @@ impl MeshData {
             };
             places.push(mesh.primitives.iter().map(&mut place).collect::<Result<Vec<_>, VulkanError>>()?);
         }
-        let positions: Vec<[f32; 3]> =
-            primitives.iter().flat_map(|primitive| primitive.positions.iter().copied()).collect();
+        let shapes = scene.shapes().iter().flatten();
+        let centred = |(primitive, shape): (&&Primitive, &Shape)| {
+            let center = shape.center;
+            let from_center = move |position| (DVec3::from(wide(position)) - center).as_vec3().to_array();
+            primitive.positions.iter().copied().map(from_center).collect::<Vec<[f32; 3]>>()
+        };
+        let positions: Vec<[f32; 3]> = primitives.iter().zip(shapes).flat_map(centred).collect();
         let texel = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let vertex = vk::BufferUsageFlags::VERTEX_BUFFER;
         let stream = |name: &str, bytes: &[u8], stride: u32, usage| {
@@ -285,6 +272,10 @@ fn too_many() -> VulkanError {
     }
 }
 
+fn wide(position: [f32; 3]) -> [f64; 3] {
+    position.map(f64::from)
+}
+
 fn narrow(count: usize) -> Result<u32, VulkanError> {
     u32::try_from(count).map_err(|_| too_many())
 }
@@ -298,112 +289,4 @@ fn box_of(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
         }
     }
     if positions.is_empty() { [[0.0; 3]; 2] } else { bounds }
-}
-
-/// The area of a primitive that is moved by a linear map, m².
-fn area_of(primitive: &Primitive, linear: DMat3) -> f64 {
-    let corner = |index: u32| linear * DVec3::from(primitive.positions[index as usize].map(f64::from));
-    let triangles = primitive.indices.chunks_exact(3).map(|indices| [0, 1, 2].map(|place| corner(indices[place])));
-    triangles.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
-}
-
-/// The area of all instances, m². Only those whose transform is no similarity are measured triangle by triangle.
-fn surface_area(scene: &Scene, meshes: &MeshData) -> f64 {
-    let area = |instance: &Instance| {
-        let linear = instance.world.matrix3;
-        let scale2 = linear.x_axis.length_squared();
-        let stretch = (linear.transpose() * linear - DMat3::from_diagonal(DVec3::splat(scale2))).to_cols_array();
-        if stretch.into_iter().all(|entry| entry.abs() <= 1e-6 * scale2) {
-            scale2 * meshes.places[instance.mesh.0][instance.primitive].area
-        } else {
-            area_of(&scene.meshes()[instance.mesh.0].primitives[instance.primitive], linear)
-        }
-    };
-    scene.instances().iter().map(area).sum()
-}
-
-fn upload_instances(
-    device: &Arc<Device>,
-    scene: &Scene,
-    (meshes, cutouts): (&MeshData, &[Cutout]),
-    origin: DVec3,
-) -> Result<(Arc<Buffer>, Vec<DrawnInstance>), VulkanError> {
-    let mut records = Vec::new();
-    let mut drawn = Vec::new();
-    for instance in scene.instances() {
-        let place = meshes.places[instance.mesh.0][instance.primitive];
-        let primitive = &scene.meshes()[instance.mesh.0].primitives[instance.primitive];
-        records.push(instance_record(instance, primitive, place, origin));
-        let index = primitive.material.0;
-        let mut instance = drawn_instance(instance, place, index, &scene.materials()[index], origin);
-        match cutouts[index] {
-            Cutout::Nothing => instance.index_count = 0,
-            cutout => instance.textured |= is_cut(cutout, instance.masked, primitive),
-        }
-        drawn.push(instance);
-    }
-    let buffer = buffer_with(
-        device,
-        "scene.instances",
-        bytemuck::cast_slice(&records),
-        vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
-    )?;
-    Ok((buffer, drawn))
-}
-
-const FLAT_NORMALS: u32 = 1;
-const FLIPPED: u32 = 2;
-const HAS_COLORS: u32 = 4;
-const HAS_TANGENTS: u32 = 8;
-
-fn instance_record(instance: &Instance, primitive: &Primitive, place: Place, origin: DVec3) -> types::Instance {
-    let world = instance.world;
-    let [a, b, c] = [world.matrix3.x_axis, world.matrix3.y_axis, world.matrix3.z_axis];
-    let translation = world.translation - origin;
-    let row = |axis: usize| [a[axis] as f32, b[axis] as f32, c[axis] as f32, translation[axis] as f32];
-    // Any positive factor will do: the largest component becomes 1, so that no scale under- or overflows.
-    let cofactors = [b.cross(c), c.cross(a), a.cross(b)];
-    let largest = cofactors.iter().map(|column| column.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
-    let [cofactor_x, cofactor_y, cofactor_z] = cofactors.map(|column| (column / largest).as_vec3().to_array());
-    let flag = |present: bool, bit: u32| if present { bit } else { 0 };
-    types::Instance {
-        object_to_render: [row(0), row(1), row(2)],
-        cofactor_x,
-        cofactor_y,
-        cofactor_z,
-        material: u32::try_from(primitive.material.0).unwrap_or(0),
-        flags: flag(primitive.normals.is_none(), FLAT_NORMALS)
-            | flag(instance.flips_winding, FLIPPED)
-            | flag(primitive.colors.is_some(), HAS_COLORS)
-            | flag(primitive.tangents.is_some(), HAS_TANGENTS),
-        first_index: place.first_index,
-        vertex_offset: place.vertex_offset,
-        reserved: [0; 3],
-    }
-}
-
-fn drawn_instance(
-    instance: &Instance,
-    place: Place,
-    index: usize,
-    material: &Material,
-    origin: DVec3,
-) -> DrawnInstance {
-    let [low, high] = place.bounds.map(|corner| DVec3::from(corner.map(f64::from)));
-    let to_render = DAffine3 { matrix3: instance.world.matrix3, translation: instance.world.translation - origin };
-    let half = (high - low) * 0.5;
-    let axes =
-        [to_render.matrix3.x_axis * half.x, to_render.matrix3.y_axis * half.y, to_render.matrix3.z_axis * half.z];
-    DrawnInstance {
-        first_index: place.first_index,
-        index_count: place.index_count,
-        vertex_offset: place.vertex_offset,
-        material: index,
-        textured: material.textures().next().is_some(),
-        texture_kinds: texture_kinds(material),
-        masked: material.alpha != Alpha::Opaque,
-        specular: has_specular_lobe(material),
-        center_rs: to_render.transform_point3((low + high) * 0.5).as_vec3().to_array(),
-        half_axes_rs: axes.map(|axis| axis.as_vec3().to_array()),
-    }
 }

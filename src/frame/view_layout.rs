@@ -21,7 +21,7 @@ pub(crate) struct ViewShape {
     axes: DMat3,
     origin_rs: DVec3,
     near: f64,
-    /// Orthographic: far − near; perspective: 0.
+    /// Orthographic: the way from the near plane to the far one, which the origin lies in; perspective: 0.
     depth_range: f64,
     /// Half extent of what carries flux, in tangent units or metres; the view itself is larger by the guard band.
     half_extent: [f64; 2],
@@ -95,13 +95,17 @@ impl ViewShape {
         faces
     }
 
-    /// A parallel view of the box `low` to `high`, given in the axes' coordinates.
-    pub(crate) fn parallel(source: ViewSource, axes: DMat3, low: DVec3, high: DVec3) -> Vec<ViewShape> {
+    /// A parallel view of the box `low` to `high`, given in the axes' coordinates, that begins at `start` or where the box does.
+    ///
+    /// Its depth counts from the far end, where the box is: reversed, it is as precise there as if the view began at the box, however far
+    /// before it something casts its shadow.
+    pub(crate) fn parallel(source: ViewSource, axes: DMat3, [low, high]: [DVec3; 2], start: f64) -> Vec<ViewShape> {
         let middle = (low + high) * 0.5;
         let size = (high - low).max(DVec3::splat(1e-6 * (high - low).max_element()).max(DVec3::splat(1e-30)));
-        // Nothing lies outside the box; a little more depth keeps rounding from clipping its ends.
-        let (start, depth_range) = (low.z - 0.01 * size.z, 1.02 * size.z);
-        let origin_rs = axes * DVec3::new(middle.x, middle.y, start);
+        // A little more depth keeps rounding from clipping its ends.
+        let end = high.z + 0.01 * size.z;
+        let depth_range = (end - start.min(low.z)) * 1.0001 + 0.01 * size.z;
+        let origin_rs = axes * DVec3::new(middle.x, middle.y, end);
         let ViewSource { resolution, strength, light, .. } = source;
         let half_extent = [size.x * 0.5, size.y * 0.5];
         vec![ViewShape {
@@ -143,8 +147,9 @@ impl ViewShape {
         let [right, down, forward] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis].map(|axis| axis.as_vec3());
         let origin = self.origin_rs.as_vec3();
         let (near, depth_range) = (self.near as f32, self.depth_range as f32);
+        let start = if depth_range > 0.0 { -depth_range } else { near };
         let clip =
-            view_projection(origin, [right * reach[0] as f32, down * reach[1] as f32, forward], near, depth_range);
+            view_projection(origin, [right * reach[0] as f32, down * reach[1] as f32, forward], start, depth_range);
         let signed = |texels: u32| i32::try_from(texels).unwrap_or(i32::MAX);
         let lit = self.half_extent.map(|half| half as f32);
         let record = types::LightView {
@@ -289,8 +294,8 @@ mod tests {
         shapes.extend(ViewShape::parallel(
             source(512, 3),
             DMat3::IDENTITY,
-            DVec3::splat(-1.0),
-            DVec3::new(4.0, 1.0, 1.0),
+            [DVec3::splat(-1.0), DVec3::new(4.0, 1.0, 1.0)],
+            -1.0,
         ));
         let atlas = Atlas::new(shapes, 1, 16384);
         let mut taken = vec![false; (atlas.size[0] * atlas.size[1]) as usize];

@@ -11,6 +11,7 @@ mod bvh_speed;
 mod direct;
 mod emitter_coverage;
 mod estimates;
+mod far_things;
 mod flux;
 mod gather;
 mod graph;

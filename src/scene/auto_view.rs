@@ -50,7 +50,7 @@ const OUTSIDE: [(DVec3, DVec3); 7] = [
 
 /// The view of [`Scene::camera_view`] for a scene without cameras.
 pub(super) fn find(scene: &Scene) -> CameraView {
-    let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE });
+    let bounds = scene.bulk().unwrap_or(Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE });
     let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
     let rays = Rays::new(scene, &bounds, radius);
     let points = rays.surface_points(POINTS);

@@ -33,6 +33,8 @@ const DEEPEST: usize = 32;
 const DEEPEST_BINARY: usize = 512;
 /// Triangles with a coordinate beyond this, in metres, are left out: squares of areas would overflow.
 const FARTHEST: f32 = 1e15;
+/// Over a triangle's size: a thousand times what rounding makes of a hit that is not grazing.
+const DOUBTFUL: f32 = 1.0 / 256.0;
 const TRIANGLES_A_LEAF: u32 = 3;
 /// Share of the nodes that the optimiser tries to place better. More costs seconds and gains nothing measurable.
 const REINSERTED: f32 = 0.1;
@@ -46,12 +48,29 @@ pub(crate) struct BvhTriangle {
     pub(crate) flags: u32,
 }
 
+impl BvhTriangle {
+    /// n·x of its points, m, with the normal n = (b − a)×(c − a) of length 1 that its corners have in doubles.
+    pub(crate) fn plane(&self) -> f32 {
+        let [a, b, c] = self.corners.map(|corner| Vec3::from(corner).as_dvec3());
+        (b - a).cross(c - a).normalize_or(DVec3::Z).dot(a) as f32
+    }
+
+    /// Exponent bits of a float: how near one of its ends a ray may meet the triangle, metres, before rounding of the corners is worth a look. A share of
+    /// its size, since what is seen from farther away than that is also met farther away.
+    fn doubtful(&self) -> u32 {
+        let [a, b, c] = self.corners.map(Vec3::from);
+        let size = (b - a).abs().max((c - a).abs()).max_element();
+        (size * DOUBTFUL).to_bits() & 0x7F80_0000
+    }
+}
+
 /// The hierarchy as the shader reads it.
 pub(crate) struct Bvh {
-    /// For a `usamplerBuffer` of format rgba32ui, five texels a node. The root is node 0; there is always one.
+    /// For a `usamplerBuffer` of format rgba32ui, five texels a node, and one whose first word says how far rays start from surfaces at least. The root is node 0; there is always one.
     pub(crate) nodes: Vec<[u32; 4]>,
     /// For a `samplerBuffer` of format rgba32f, three texels a triangle in the order of the leaves: corners 0, 1, 2, with the bits
-    /// of the triangle's index in the list, of its flags, and 0 as their fourth components. A split triangle stands there more
+    /// of the triangle's index in the list, of its flags with [`BvhTriangle::doubtful`], and the distance of its plane from the origin as their
+    /// fourth components. A split triangle stands there more
     /// than once. Never empty.
     pub(crate) triangles: Vec<[f32; 4]>,
 }
@@ -74,18 +93,32 @@ impl Bvh {
             })
             .unzip();
         if sound.is_empty() {
-            return Bvh { nodes: vec![[0; 4]; 5], triangles: vec![[0.0; 4]; 3] };
+            return Bvh { nodes: vec![[0; 4]; 6], triangles: vec![[0.0; 4]; 3] };
         }
         let tree = wide(&sound, deepest);
         let texels = tree.primitive_indices.iter().flat_map(|&place| {
             let triangle = &triangles[numbers[place as usize] as usize];
-            let words = [numbers[place as usize], triangle.flags, 0];
+            let words = [numbers[place as usize], triangle.flags | triangle.doubtful(), triangle.plane().to_bits()];
             [0, 1, 2].map(|corner| {
                 let [x, y, z] = triangle.corners[corner];
                 [x, y, z, f32::from_bits(words[corner])]
             })
         });
-        Bvh { triangles: texels.collect(), nodes: bytemuck::cast_slice(&tree.nodes).to_vec() }
+        let mut bvh = Bvh { triangles: texels.collect(), nodes: bytemuck::cast_slice(&tree.nodes).to_vec() };
+        let corners = || triangles.iter().filter(|triangle| can_be_hit(triangle)).flat_map(|triangle| triangle.corners);
+        let [low, high] = [f32::min as fn(f32, f32) -> f32, f32::max].map(|join| {
+            corners().map(Vec3::from).reduce(|a, b| Vec3::from_array([0, 1, 2].map(|axis| join(a[axis], b[axis]))))
+        });
+        let extent = low.zip(high).map_or(0.0, |(low, high)| (high - low).max_element());
+        bvh.nodes.push([(extent / (1 << 17) as f32).to_bits(), 0, 0, 0]);
+        bvh
+    }
+
+    /// Sets how far rays start from surfaces at least, metres.
+    pub(crate) fn set_least_offset(&mut self, least: f32) {
+        if let Some(last) = self.nodes.last_mut() {
+            *last = [least.to_bits(), 0, 0, 0];
+        }
     }
 
     /// All triangles of a scene, in the order of its instances and their indices, around `origin`, in metres.

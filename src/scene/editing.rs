@@ -2,6 +2,7 @@
 //! the rest of the engine need not check again.
 
 use super::camera::Camera;
+use super::extent::Shape;
 use super::light::{Light, LightSpec};
 use super::material::{Material, Texture};
 use super::mesh::Mesh;
@@ -9,6 +10,8 @@ use super::world::{Node, Scene};
 use super::{CameraId, LightId, MaterialId, MeshId, SceneError, TextureId};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::OnceLock;
+
+use rayon::prelude::*;
 
 impl Scene {
     /// Adds a texture.
@@ -74,7 +77,9 @@ impl Scene {
             }
         }
         self.emissions.push(mesh.primitives.iter().map(|_| OnceLock::new()).collect());
+        self.shapes.push(mesh.primitives.par_iter().map(Shape::of).collect());
         self.meshes.push(mesh);
+        self.revisions.geometry += 1;
         Ok(MeshId(self.meshes.len() - 1))
     }
 

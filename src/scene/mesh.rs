@@ -139,11 +139,11 @@ impl Bounds {
     }
 }
 
-/// The tight box around some placed triangles; `None` if there are none.
-pub(super) fn bounds_of(primitive: &Primitive, world: &DAffine3) -> Option<Bounds> {
+/// The tight box around the corners that count of some placed triangles; `None` if there are none.
+pub(super) fn bounds_of(primitive: &Primitive, world: &DAffine3, counts: impl Fn(&DVec3) -> bool) -> Option<Bounds> {
     let corners = primitive.indices.iter().map(|&index| {
         let [x, y, z] = primitive.positions[index as usize];
         world.transform_point3(DVec3::new(x.into(), y.into(), z.into()))
     });
-    corners.map(|point| Bounds { min: point, max: point }).reduce(Bounds::union)
+    corners.filter(counts).map(|point| Bounds { min: point, max: point }).reduce(Bounds::union)
 }

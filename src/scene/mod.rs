@@ -11,6 +11,7 @@
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `ids` | the indices that name them |
 //! | `camera_choice` | which camera the scene is seen from |
+//! | `extent`, `bulk` | where it is and how far it reaches, whatever specks lie far from it |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emission`, `emission_points`, `shining` | what alpha and textures leave of emissive surfaces |
@@ -29,6 +30,7 @@
 mod animation;
 mod auto_view;
 mod builtin;
+mod bulk;
 pub(crate) mod bvh;
 mod camera;
 mod camera_choice;
@@ -40,6 +42,7 @@ mod emission;
 mod emission_points;
 mod emitters;
 mod error;
+mod extent;
 mod facts;
 mod gltf;
 mod ids;
@@ -69,4 +72,5 @@ pub use world::{Node, Revisions, Scene};
 pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;
 pub(crate) use emission::EmissiveCells;
+pub(crate) use extent::{Extent, Shape};
 pub(crate) use facts::has_specular_lobe;

@@ -5,6 +5,7 @@
 use super::animation::{Animation, Pose};
 use super::camera::Camera;
 use super::emission::Emission;
+use super::extent::{Extent, Shape};
 use super::light::{Light, PlacedLight};
 use super::material::{Material, Texture};
 use super::mesh::{Bounds, Instance, Mesh, bounds_of};
@@ -76,6 +77,8 @@ pub struct Scene {
     /// What loading had to leave out or change, a sentence each.
     pub warnings: Vec<String>,
     pub(super) meshes: Vec<Mesh>,
+    /// Of each primitive of each mesh.
+    pub(super) shapes: Vec<Vec<Shape>>,
     pub(super) materials: Vec<Material>,
     pub(super) textures: Vec<Texture>,
     nodes: Vec<Node>,
@@ -85,13 +88,14 @@ pub struct Scene {
     pub(super) cameras: Vec<Camera>,
     animations: Vec<Animation>,
     /// Transforms of animated nodes as they were before any animation.
-    rest_poses: BTreeMap<NodeId, Pose>,
+    pub(super) rest_poses: BTreeMap<NodeId, Pose>,
     pub(super) sky: [f32; 3],
     pub(super) revisions: Revisions,
     identity: Identity,
     bounds: OnceLock<Option<Bounds>>,
     /// Of each primitive of each mesh.
     pub(super) emissions: Vec<Vec<OnceLock<Arc<Emission>>>>,
+    pub(super) extent: OnceLock<Extent>,
 }
 
 /// What decides how a scene looks, see [`Scene::content`].
@@ -205,6 +209,7 @@ impl Scene {
             description: _,
             warnings: _,
             meshes,
+            shapes: _,
             materials,
             textures,
             nodes: _,
@@ -219,6 +224,7 @@ impl Scene {
             identity: _,
             bounds: _,
             emissions: _,
+            extent: _,
         } = self;
         Content { meshes, materials, textures, instances, lights: self.placed_lights(), sky: *sky }
     }
@@ -228,7 +234,7 @@ impl Scene {
         let all = || {
             self.instances
                 .par_iter()
-                .filter_map(|it| bounds_of(self.primitive(it), &it.world))
+                .filter_map(|it| bounds_of(self.primitive(it), &it.world, |_| true))
                 .reduce_with(Bounds::union)
         };
         *self.bounds.get_or_init(all)
@@ -277,6 +283,7 @@ impl Scene {
         self.nodes.push(node);
         self.placements.push(Placement { world, children: Vec::new(), instances: start..self.instances.len() });
         self.count_moved(&[id]);
+        self.extent = OnceLock::new();
         Ok(id)
     }
 
@@ -287,6 +294,7 @@ impl Scene {
     /// nothing moves.
     pub fn set_local_transform(&mut self, node: NodeId, local: DAffine3) -> Result<(), SceneError> {
         self.check("node", node.0, self.nodes.len())?;
+        self.extent = OnceLock::new();
         self.move_nodes(&[(node, local)])
     }
 
@@ -358,6 +366,7 @@ impl Scene {
             self.rest_poses.entry(channel.node).or_insert_with(|| Pose::of(local));
         }
         self.animations.push(animation);
+        self.extent = OnceLock::new();
         Ok(())
     }
 
@@ -365,6 +374,7 @@ impl Scene {
     pub(super) fn set_rest_pose(&mut self, node: NodeId, pose: Pose) {
         if let Some(rest) = self.rest_poses.get_mut(&node) {
             *rest = pose;
+            self.extent = OnceLock::new();
         }
     }
 

@@ -4,7 +4,8 @@ use glam::{DVec3, Mat4, Vec3, Vec4};
 
 use super::options::{ListProjection, PhotonOptions};
 use crate::frame::geometry::DrawView;
-use crate::frame::scene_data::{DrawnInstance, SceneData};
+use crate::frame::instances::OrientedBox;
+use crate::frame::scene_data::SceneData;
 use crate::shaders::types;
 
 /// Texels around the scene. What ends at its bounds, such as a room's floor, ends between two texels then, and lacks no sliver.
@@ -65,19 +66,20 @@ fn axes(views: u32) -> Vec<[DVec3; 3]> {
     }
 }
 
-/// The least and the largest coordinate of the scene's instances along `axis`.
+/// The least and the largest coordinate along `axis` of what matters of the scene's instances: specks far away take no texels.
 fn extent(data: &SceneData, axis: DVec3) -> [f64; 2] {
-    let of = |drawn: &DrawnInstance| {
+    let of = |bulk: OrientedBox| {
         let along = |vector: [f32; 3]| Vec3::from(vector).as_dvec3().dot(axis);
-        let reach: f64 = drawn.half_axes_rs.iter().map(|&half| along(half).abs()).sum();
-        [along(drawn.center_rs) - reach, along(drawn.center_rs) + reach]
+        let reach: f64 = bulk.half_axes_rs.iter().map(|&half| along(half).abs()).sum();
+        [along(bulk.center_rs) - reach, along(bulk.center_rs) + reach]
     };
     let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    data.drawn.iter().filter(|drawn| drawn.index_count > 0).map(of).reduce(join).unwrap_or([-1.0, 1.0])
+    let drawn = data.drawn.iter().filter(|drawn| drawn.index_count > 0);
+    drawn.filter_map(|drawn| drawn.bulk).map(of).reduce(join).unwrap_or([-1.0, 1.0])
 }
 
 fn parallel_view(data: &SceneData, [right, down, forward]: [DVec3; 3], side: f64) -> ListView {
-    let least = 1e-3 * data.radius;
+    let least = 1e-3 * data.reach;
     // The texels' edges, and their size.
     let lateral = |axis: DVec3| {
         let [low, high] = extent(data, axis);

@@ -89,7 +89,8 @@ impl Method for Photons {
         let splatted = SplatInputs {
             buffer: cx.frame.surface,
             options,
-            length: cx.frame.data.radius,
+            // Hits among triangles are on their surfaces.
+            length: if options.trace == PhotonTracing::Bvh { 0.0 } else { cx.frame.data.reach },
             tiles_at_once: sums::TILES_AT_ONCE,
         };
         Ok(Some(splat(cx.graph, &splatted, &traced.landed)))

@@ -156,7 +156,13 @@ fn surface_points(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, 
         first_triangles: first_triangles.texels(vk::Format::R32_UINT),
         area_sums: area_sums.write(),
         block_areas: block_areas.write(),
-        push: AreasPush { instance_count, triangle_count, block_count },
+        push: AreasPush {
+            instance_count,
+            triangle_count,
+            block_count,
+            reach: data.reach as f32,
+            middle_rs: data.middle_rs.as_vec3().to_array(),
+        },
     };
     let groups = [block_count.min(MOST_GROUPS), 1, 1];
     graph.pass("diffuse/vpl/visibility/ism-areas", pass).note("triangles", u64::from(triangle_count)).groups(groups);

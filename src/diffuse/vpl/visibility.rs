@@ -10,9 +10,6 @@ use crate::method::FrameCx;
 use crate::shaders::groups::{SceneRays, VplVisibility};
 use crate::shaders::types::VplRays;
 
-/// How far from a VPL's surface rays end or start, as a share of the scene's radius.
-const OFFSET: f64 = 3e-5;
-
 /// The kinds of glsl/groups/vpl_visibility.glsl.
 const NONE: u32 = 0;
 const ISM: u32 = 1;
@@ -32,7 +29,7 @@ impl Visibility {
         let (radius, origin, traced) = (cx.frame.data.radius, cx.frame.data.origin, cx.rays());
         let graph = &mut *cx.graph;
         let shift = traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
-        let rays = VplRays { shift, offset: (radius * OFFSET) as f32, radius: radius as f32 };
+        let rays = VplRays { shift, radius: radius as f32 };
         let vpl_rays = graph.upload("vpl.rays", &[rays], Dependence::GEOMETRY).uniform();
         let ism_maps = TexelBuffer::absent();
         Visibility {

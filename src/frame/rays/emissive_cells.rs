@@ -48,8 +48,9 @@ impl CellTables {
         Some(place)
     }
 
-    /// First record and cells an edge of a triangle's table, where the tables begin at `start`; zeros if it has none.
-    pub(super) fn of_triangle(&self, triangle: usize, start: u32) -> [u32; 2] {
-        self.places.get(&triangle).map_or([0; 2], |[first, side]| [start + first, *side])
+    /// Cells an edge of a triangle's table, seven bits, and records from its first to the end of all, 25 bits; 0 if it has none.
+    pub(super) fn of_triangle(&self, triangle: usize) -> u32 {
+        let all = u32::try_from(self.records.len()).unwrap_or(0);
+        self.places.get(&triangle).map_or(0, |[first, side]| side << 25 | (all - first))
     }
 }

@@ -16,7 +16,7 @@ use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Alpha, Bounds, Cutout, Facts, Material, Scene, cutout};
+use crate::scene::{Alpha, Bounds, Cutout, Extent, Facts, Material, Scene, cutout};
 use crate::shaders::groups::{SceneLights, SceneRays};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
@@ -27,8 +27,12 @@ pub(crate) struct TracedScene {
     /// Of what rays meet, whatever shines on it.
     pub(crate) surfaces_key: u64,
     pub(crate) origin: DVec3,
-    /// Of the sphere around the scene, metres.
+    /// Of the box around what matters, in render space.
+    pub(crate) middle_rs: DVec3,
+    /// Half its diagonal, metres.
     pub(crate) radius: f64,
+    /// Some surface is farther away from its middle.
+    pub(crate) far_surfaces: bool,
     pub(crate) facts: Facts,
     pub(crate) sky: [f32; 3],
     /// The kinds of textures that any material reads, as the shaders' bits.
@@ -43,7 +47,10 @@ pub(crate) struct TracedScene {
     pub(crate) emitter_count: u32,
     /// Some light ends at a range, so that paths from it are none.
     pub(crate) ranged_lights: bool,
-    /// Of all triangles, m².
+    /// Rays that start as far from surfaces as rounding of the largest coordinate asks would leave out an eighth of the finer triangles: rounding is bounded
+    /// triangle by triangle (glsl/lib/bvh.glsl).
+    wide: bool,
+    /// Of the triangles that matter, m².
     pub(crate) area: f64,
     pub(crate) punctual_count: u32,
     pub(crate) emissive_count: u32,
@@ -64,17 +71,17 @@ const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 impl TracedScene {
     /// Flattens, sorts and uploads the scene as it is now.
     pub(crate) fn new(device: &Arc<Device>, scene: &Scene) -> Result<TracedScene, VulkanError> {
-        let bounds = scene.bounds().unwrap_or(Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) });
-        let (origin, radius) = (bounds.center(), bounds.radius().max(1e-9));
+        let Extent { origin, middle, .. } = scene.extent();
+        let bulk = scene.bulk().unwrap_or(Bounds { min: middle - 1.0, max: middle + 1.0 });
+        let (middle_rs, radius) = (bulk.center() - origin, bulk.radius().max(1e-30));
         let facts = scene.facts();
         let (triangles, corners) = flatten(scene, origin, &facts)?;
         let lights = shining_lights(scene);
         let EmitterTable { records: emitters, light_densities, cells, power, triangle_records, triangle_power } =
             emitter_table(scene, &triangles, &lights, radius);
-        let cells_start = 4 * u32::try_from(triangles.len()).unwrap_or(0);
         let mut records: Vec<[u32; 4]> = (0..)
             .zip(triangles.iter().zip(&light_densities))
-            .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index, cells_start)))
+            .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index)))
             .collect();
         records.extend(&cells.records);
         let cutouts: Vec<Cutout> =
@@ -90,7 +97,9 @@ impl TracedScene {
                 },
             })
             .collect();
-        let bvh = Bvh::build(&bvh_triangles);
+        let mut bvh = Bvh::build(&bvh_triangles);
+        let fine = fine_size(triangles.iter().filter(|triangle| triangle.nearest(middle_rs) <= radius));
+        bvh.set_least_offset((radius / 131_072.0).min(fine / 64.0) as f32);
         let texels = Texels::new(scene.textures())?;
         let materials: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
         let media: Vec<[f32; 4]> = scene.materials().iter().map(Material::medium).collect();
@@ -126,7 +135,9 @@ impl TracedScene {
             key: traced_key(scene),
             surfaces_key: surfaces_key(scene),
             origin,
+            middle_rs,
             radius,
+            far_surfaces: triangles.iter().any(|triangle| triangle.farthest(middle_rs) > radius * (1.0 + 1e-6)),
             facts,
             sky: scene.sky(),
             texture_kinds: scene.materials().iter().fold(0, |kinds, material| kinds | texture_kinds(material)),
@@ -139,10 +150,15 @@ impl TracedScene {
                 .iter()
                 .any(|material| material.emits() && material.alpha != Alpha::Opaque),
             emissive_cells: !cells.records.is_empty(),
+            wide: triangles.iter().any(|triangle| triangle.farthest(DVec3::ZERO) / 65536.0 > fine / 8.0),
             cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
             emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
             ranged_lights: lights.iter().any(|light| light.range.is_some()),
-            area: triangles.iter().map(TracedTriangle::area).sum(),
+            area: triangles
+                .iter()
+                .filter(|triangle| triangle.nearest(middle_rs) <= radius)
+                .map(TracedTriangle::area)
+                .sum(),
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
@@ -193,6 +209,7 @@ impl TracedScene {
             normal_maps: u32::from(self.facts.normal_mapped),
             textures: self.texture_kinds,
             emissive_cells: u32::from(self.emissive_cells),
+            wide: u32::from(self.wide),
         }
     }
 
@@ -210,14 +227,22 @@ impl TracedScene {
     }
 }
 
+/// The size that all but a sixteenth of the triangles have, metres.
+fn fine_size<'t>(triangles: impl Iterator<Item = &'t TracedTriangle>) -> f64 {
+    let mut sizes: Vec<f64> = triangles.map(|triangle| triangle.area().sqrt()).filter(|&size| size > 0.0).collect();
+    let place = sizes.len() / 16;
+    if sizes.is_empty() { f64::INFINITY } else { *sizes.select_nth_unstable_by(place, f64::total_cmp).1 }
+}
+
 /// Names a scene's content within this process, whatever the camera sees of it.
 pub(crate) fn traced_key(scene: &Scene) -> u64 {
     let revisions = scene.revisions();
-    hash_of(&(scene.identity(), revisions.geometry, revisions.materials, revisions.lights))
+    hash_of(&(surfaces_key(scene), revisions.lights))
 }
 
 /// The same of its surfaces alone.
 pub(crate) fn surfaces_key(scene: &Scene) -> u64 {
     let revisions = scene.revisions();
-    hash_of(&(scene.identity(), revisions.geometry, revisions.materials))
+    let place = scene.extent().origin.to_array().map(f64::to_bits);
+    hash_of(&(scene.identity(), revisions.geometry, revisions.materials, place))
 }

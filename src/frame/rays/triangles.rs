@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::frame::octahedral::pack_direction;
+use crate::scene::bvh::BvhTriangle;
 use crate::scene::{Facts, Primitive, Scene};
 use crate::vulkan::VulkanError;
 
@@ -23,14 +24,31 @@ impl TracedTriangle {
         [self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]]
     }
 
+    /// The largest of its corners' distances from a point, metres.
+    pub(super) fn farthest(&self, point: DVec3) -> f64 {
+        self.corners.iter().map(|corner| corner.as_dvec3().distance(point)).fold(0.0, f64::max)
+    }
+
+    /// Its distance from a point, at least, metres.
+    pub(super) fn nearest(&self, point: DVec3) -> f64 {
+        let middle = self.corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() / 3.0;
+        let radius = self.corners.iter().map(|corner| corner.as_dvec3().distance(middle)).fold(0.0, f64::max);
+        middle.distance(point) - radius
+    }
+
     /// m²
     pub(super) fn area(&self) -> f64 {
         let [edge1, edge2] = self.edges().map(Vec3::as_dvec3);
         0.5 * edge1.cross(edge2).length()
     }
 
+    /// Distance of its plane from the origin along its normal, metres.
+    fn plane(&self) -> f32 {
+        BvhTriangle { corners: self.corners.map(|corner| corner.to_array()), flags: 0 }.plane()
+    }
+
     /// `cells`: where on it points are drawn (`CellTables`).
-    pub(super) fn record(&self, light_density: f32, cells: [u32; 2]) -> [[u32; 4]; 4] {
+    pub(super) fn record(&self, light_density: f32, cells: u32) -> [[u32; 4]; 4] {
         let [edge1, edge2] = self.edges();
         let words = |vector: Vec3, last: u32| [vector.x.to_bits(), vector.y.to_bits(), vector.z.to_bits(), last];
         let normals = self.normals.unwrap_or_default();
@@ -38,7 +56,7 @@ impl TracedTriangle {
             words(self.corners[0], self.material | if self.normals.is_none() { FLAT } else { 0 }),
             words(edge1, normals[0]),
             words(edge2, normals[1]),
-            [normals[2], light_density.to_bits(), cells[0], cells[1]],
+            [normals[2], light_density.to_bits(), self.plane().to_bits(), cells],
         ]
     }
 }
