@@ -69,4 +69,4 @@ pub use world::{Node, Revisions, Scene};
 pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;
 pub(crate) use emission::EmissiveCells;
-pub(crate) use facts::has_specular_lobe;
+pub(crate) use facts::{has_specular_lobe, is_glossy};
