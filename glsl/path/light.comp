@@ -5,6 +5,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "lib/emitters.glsl"
+#include "path/mis.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 #include "path/vertex.glsl"
@@ -29,7 +30,7 @@ layout(set = 0, binding = 2) buffer QueueBlock { uint connections[]; };
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;
     uint depth;           // vertices before this one
-    float light_paths;    // N of mis.glsl
+    LightPaths light_paths;
     float disc_area;      // m², across which light paths of a directional light start
     vec3 middle;          // of the scene
 } push;
@@ -39,7 +40,7 @@ struct LightSample {
     float distance;         // up to which nothing may be in between
     vec3 irradiance;        // across the beam over the probability (punctual) or radiance over the density (triangle)
     float next;             // density at the vertex, 1/sr; 0: no other strategy but light paths finds it
-    float emission_density; // of light paths that leave the light here, at the vertex across the beam: 1/m²
+    float emission_density; // of light paths that leave the light here wherever it goes, at the vertex across the beam: 1/m²
 };
 
 // Of light paths of a directional light, 1/m².
@@ -76,10 +77,10 @@ LightSample sample_triangle(Emitter emitter, vec3 position_rs, vec2 random) {
         cosine * INVERSE_PI * (both_sides ? 0.5 : 1.0) / distance2);
 }
 
-// The balance heuristic for one lobe. `reverse`: density of the light's path from here to the vertex before, 1/sr.
-float weight_of_next(LightSample light, float density, float light_ratio, float reverse) {
+// The balance heuristic for one lobe. `by_light`: the density of a light's path that finds the same, over that of this one.
+float weight_of_next(LightSample light, float density, float by_light) {
     float hit = light.next > 0.0 ? density / light.next : 0.0;
-    return 1.0 / (1.0 + hit + light_ratio * reverse);
+    return 1.0 / (1.0 + hit + by_light);
 }
 
 LightSample light_from(Emitter emitter, vec3 position_rs, vec2 random) {
@@ -112,12 +113,12 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
     vec3 shares = lobe_shares(vertex.matter, viewer.z);
     LobeValue diffuse = diffuse_lobe(vertex.matter, viewer, direction, shares.x);
     LobeValue specular = specular_lobe(vertex.matter, viewer, direction, shares);
-    float light_ratio = 0.0;
-    vec2 reverse = vec2(0.0);
+    vec2 by_light = vec2(0.0);
     if (LIGHT_PATHS != 0u && push.depth > 0u) {
-        light_ratio = vertex.ratio * vertex.reverse_geometry * push.light_paths * light.emission_density * abs(side);
-        reverse.x = lobe_density(vertex.matter, LOBE_DIFFUSE, direction, viewer);
-        reverse.y = lobe_density(vertex.matter, LOBE_SPECULAR, direction, viewer);
+        float sent = light_path_density(push.light_paths, light.emission_density * abs(side), vertex.target_density);
+        by_light.x = lobe_density(vertex.matter, LOBE_DIFFUSE, direction, viewer);
+        by_light.y = lobe_density(vertex.matter, LOBE_SPECULAR, direction, viewer);
+        by_light *= vertex.ratio * vertex.reverse_geometry * push.light_paths.count * sent;
     }
     vec3 arriving = texelFetch(path_states, int(path)).rgb * light.irradiance;
     if (SPECULAR_LOBES != 0u) {
@@ -128,8 +129,8 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
         // Radiance changes by the square of the ratio of indices, as in scatter.
         arriving /= vertex.matter.relative_ior * vertex.matter.relative_ior;
     }
-    light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, light_ratio, reverse.x);
-    light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, light_ratio, reverse.y);
+    light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, by_light.x);
+    light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, by_light.y);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
     // Aimed from where the ray starts: an emitter close by must not hide itself.
     bool far = light.distance > 1e37;

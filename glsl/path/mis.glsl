@@ -10,10 +10,24 @@
 //   C_k = Π_{i=2}^{k−1} p(z_i → z_{i−1}) / (c(z_1) Π_{i=1}^{k−1} p(z_i → z_{i+1}))        p in 1/m² at the vertex that it leads to
 //   X = C_k · p(z_k → z_{k−1}) · N p(light → z_k)
 //
-// c(z_1): camera rays per m² of surface and sample of every pixel; N: light paths per sample of every pixel. A light's path y_1 … y_k
+// c(z_1): camera rays per m² of surface and sample of every pixel; N: light paths for a sample of all pixels. A light's path y_1 … y_k
 // carries the inverse D in the same way, with the factor 1 + p_hit/p_next at y_1 and p(y_j → y_{j−1}) at the later ones.
 #ifndef PATH_MIS
 #define PATH_MIS
+
+// Light paths: N of them for every sample of all pixels. Some go wherever the light goes, others are sent to what gathers light
+// (src/frame/rays/targets.rs).
+struct LightPaths {
+    float count;     // N
+    float anywhere;  // the share of the former
+    float targeted;  // the share of the latter, times the factor that target densities lack
+};
+
+// p(light → z) in 1/m² of the surface at z, from that of paths that go anywhere and the target density there. Nothing is sent where
+// no path would go otherwise.
+float light_path_density(LightPaths paths, float anywhere, float target_density) {
+    return anywhere > 0.0 ? paths.anywhere * anywhere + paths.targeted * target_density : 0.0;
+}
 
 // Where camera rays go: one ray for every sample of a pixel.
 struct CameraRays {

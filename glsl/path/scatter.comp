@@ -3,7 +3,9 @@
 #include "groups/new_paths.glsl"
 #include "groups/paths.glsl"
 #include "groups/scene_rays.glsl"
+#include "lib/color.glsl"
 #include "lib/sobol.glsl"
+#include "path/mis.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 #include "path/vertex.glsl"
@@ -18,7 +20,8 @@ layout(local_size_x = 64) in;
 
 layout(push_constant, scalar) uniform Push {
     uint depth;  // vertices before this one
-    uint reserved;
+    float flux;  // that a light's path carries at first, on the average, W (luminance)
+    LightPaths light_paths;
 } push;
 
 // The slot that light found from the second vertex on goes to, and what later kernels need to know of the lobes so far.
@@ -80,23 +83,33 @@ bool scatter(uint path) {
         // Radiance changes by the square of the ratio of indices.
         scale = 1.0 / (vertex.matter.relative_ior * vertex.matter.relative_ior);
     }
+    bool sent = FROM_LIGHT != 0u && PHOTONS == PHOTONS_NONE;
+    if (sent && push.depth == 0u) {
+        // The vertex knows how many paths are sent to it: fewer carry more.
+        float anywhere = max(1.0 / max(push.light_paths.count * vertex.ratio, 1e-30), 1e-30);
+        float change = anywhere / light_path_density(push.light_paths, anywhere, vertex.target_density);
+        scale *= change;
+        vertex.ratio *= change;
+    }
     vec3 throughput = state.rgb * weight * scale;
-    // A camera's path may carry 1; a light's what it carried before.
-    float before = FROM_LIGHT != 0u ? max3(state.rgb) : 1.0;
+    // A camera's path may carry 1, a light's what they start with.
+    float before = FROM_LIGHT != 0u ? push.flux : 1.0;
+    float carried = FROM_LIGHT != 0u ? luminance(throughput) : max3(throughput);
     if (TRANSMISSIVE != 0u && FROM_LIGHT == 0u) {
         // What radiance loses on its way into a medium it gains on its way out.
         float index = max(side < 0.0 ? vertex.matter.relative_ior : 1.0 / vertex.matter.relative_ior, 1.0);
         before /= index * index;
     }
-    // The factor trades rays against noise: 2 is the best of 1, 2 and 4 in the Cornell boxes. The bound ends even what scatters
-    // without loss.
-    float survival = min(2.0 * max3(throughput) / max(before, 1e-37), push.depth < 8u ? 1.0 : 0.95);
+    // The factor trades rays against noise: 2 is the best of 1, 2 and 4 in the Cornell boxes; for light paths, the first vertex of
+    // which is worth most and always goes on, 1/4 of 1/8 to 1 in `ring`. The bound ends even what scatters without loss.
+    float eagerness = sent ? (push.depth == 0u ? 1e9 : 0.25) : 2.0;
+    float survival = min(eagerness * carried / max(before, 1e-37), push.depth < 8u ? 1.0 : 0.95);
     if (!(survival > 0.0) || random.w >= survival) {
         return false;
     }
     float ratio = LIGHT_PATHS != 0u ? ratio_after(vertex, drawn, viewer, arrival.w) : 0.0;
     new_states[path] = vec4(throughput / survival, ratio);
-    new_flags[path] = flags_after(new_flags[path], drawn.lobe);
+    new_flags[path] = flags_after(new_flags[path], drawn.lobe) | floatBitsToUint(vertex.target_density);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
     new_rays[2u * path] = vec4(origin, abs(side));
     new_rays[2u * path + 1u] = vec4(direction, drawn.density);

@@ -2,7 +2,7 @@
 //
 //   path_rays    2 vec4   origin, |cos| at the vertex that the ray leaves (geometric normal) | direction, density of the direction, 1/sr
 //   path_states  1 vec4   throughput (a camera's path: 1; a light's: flux in W), ratio of densities for the weights (see mis.glsl)
-//   path_flags   1 uint   FLAG_ bits
+//   path_flags   1 uint   FLAG_ bits; above them what the vertex that the ray leaves has to tell, see below
 //   path_seeds   1 uvec2  seed of the path's sequence, index of the sample in it
 //   path_hits    1 vec4   distance, barycentric coordinates of corners 1 and 2, bits of the triangle's number
 #ifndef PATH_STATE
@@ -21,6 +21,17 @@ const uint FLAG_FIRST_DIFFUSE = 8u;      // a camera's path: its first vertex sc
 const uint FLAG_LAST_SPECULAR = 16u;     // the last vertex scattered specularly
 const uint FLAG_ALL_SPECULAR = 32u;      // every vertex so far did
 const uint FLAG_BEYOND_DIFFUSE = 64u;    // some vertex before the last scattered diffusely
+
+// A path that a light sends to a target carries the triangle's number in the bits above; one that scattered the
+// density with which light paths are sent to the last vertex, the upper half of a float.
+const uint TARGET_SHIFT = 8u;
+const uint TARGETS_TOLD_APART = 0xFFFFFFu;
+const uint DENSITY_MASK = 0xFFFF0000u;
+
+// Never 0, which stands for no target.
+uint target_mark(uint triangle) {
+    return triangle % TARGETS_TOLD_APART + 1u;
+}
 
 // What photons carry (src/estimator/sppm.rs): the specialisation constant PHOTONS of kernels that leave that to them.
 const uint PHOTONS_NONE = 0u;            // nothing: there are none

@@ -1,5 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/light_targets.glsl"
 #include "groups/paths.glsl"
 #include "groups/scene_rays.glsl"
 #include "lib/emissive_cells.glsl"
@@ -29,7 +30,7 @@ layout(push_constant, scalar) uniform Push {
     uint depth;            // vertices before this one
     CameraRays rays;
     vec2 pixel_size;       // of the image plane's half sides: 2/width, 2/height
-    float light_paths;     // N of mis.glsl
+    LightPaths light_paths;
     uint path_count;
     uint ends;             // 1: nothing scatters here, the path only looks for light
 } push;
@@ -122,6 +123,11 @@ bool meet_surface(uint path) {
         }
         return false;
     }
+    // What hides a target is reached by other paths.
+    bool first_of_light = FROM_LIGHT != 0u && PHOTONS == PHOTONS_NONE && push.depth == 0u;
+    if (first_of_light && flags >> TARGET_SHIFT != 0u && flags >> TARGET_SHIFT != target_mark(index)) {
+        return false;
+    }
     Triangle triangle = load_triangle(triangles, index);
     vec3 weights = vec3(1.0 - hit.y - hit.z, hit.yz);
     vec3 face = front_normal(triangle);
@@ -174,7 +180,9 @@ bool meet_surface(uint path) {
                 float others = next;
                 if (LIGHT_PATHS != 0u && push.depth > 1u) {
                     // state.w · density is C_k · p(z_k → z_{k−1}) of the vertex that the ray left.
-                    others += next * state.w * ray.density * push.light_paths * (cosine * INVERSE_PI / sides) * reverse_geometry;
+                    float anywhere = (cosine * INVERSE_PI / sides) * reverse_geometry;
+                    float sent = light_path_density(push.light_paths, anywhere, uintBitsToFloat(flags & DENSITY_MASK));
+                    others += next * state.w * ray.density * push.light_paths.count * sent;
                 }
                 weight = ray.density / (ray.density + others);
             }
@@ -217,8 +225,13 @@ bool meet_surface(uint path) {
         vertices[first + 2u] = uvec4(
             floatBitsToUint(clamp(lobes.f0, 0.0, 1.0)), packUnorm2x16(vec2(lobes.f90, lobes.roughness)));
         vertices[first + 3u] = uvec4(floatBitsToUint(clamp(transmission, 0.0, 1.0)), floatBitsToUint(relative_ior));
+        uint target_density = 0u;
+        if (LIGHT_PATHS != 0u && push.light_paths.targeted > 0.0) {
+            target_density = floatBitsToUint(texelFetch(target_densities, int(index)).x) & DENSITY_MASK;
+        }
         vertices[first + 4u] = uvec4(
-            floatBitsToUint(ratio), floatBitsToUint(reverse_geometry), packHalf2x16(transmittance.rg), packHalf2x16(vec2(transmittance.b, 0.0)));
+            floatBitsToUint(ratio), floatBitsToUint(reverse_geometry), packHalf2x16(transmittance.rg),
+            packHalf2x16(vec2(transmittance.b, 0.0)) | target_density);
     }
     return true;
 }

@@ -4,7 +4,8 @@
 //   diffuse albedo | shading normal
 //   f0 | f90 and roughness (unorm16 each)
 //   transmission | relative ior (lobes.glsl)
-//   ratio of densities at arrival, |cos|/d² towards the last vertex, unused, unused
+//   ratio of densities at arrival, |cos|/d² towards the last vertex, transmittance since then (half floats) and, in the upper half of
+//   the last word, the density with which light paths are sent here (mis.glsl: the upper half of a float)
 #ifndef PATH_VERTEX
 #define PATH_VERTEX
 
@@ -20,6 +21,7 @@ struct Vertex {
     Matter matter;
     float ratio;
     float reverse_geometry;
+    float target_density;
 };
 
 Vertex load_vertex(usamplerBuffer vertices, uint path) {
@@ -33,6 +35,7 @@ Vertex load_vertex(usamplerBuffer vertices, uint path) {
     vertex.matter = Matter(uintBitsToFloat(b.xyz), vec3(0.0), 0.0, 1.0, vec3(0.0), 1.0);
     vertex.ratio = 0.0;
     vertex.reverse_geometry = 0.0;
+    vertex.target_density = 0.0;
     if (SPECULAR_LOBES != 0u) {
         uvec4 c = texelFetch(vertices, first + 2);
         uvec4 d = texelFetch(vertices, first + 3);
@@ -45,6 +48,7 @@ Vertex load_vertex(usamplerBuffer vertices, uint path) {
         vertex.matter.relative_ior = uintBitsToFloat(d.w);
         vertex.ratio = uintBitsToFloat(e.x);
         vertex.reverse_geometry = uintBitsToFloat(e.y);
+        vertex.target_density = uintBitsToFloat(e.w & 0xFFFF0000u);
     }
     return vertex;
 }

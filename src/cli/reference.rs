@@ -33,7 +33,7 @@ pub(crate) struct ReferenceArgs {
     /// Relative noise of the image at which fewer samples do, such as 0.5%; it is looked at each time their number has doubled
     #[arg(long, value_name = "P%", value_parser = values::percentage, conflicts_with = "shard")]
     noise: Option<f64>,
-    /// How light transport is estimated
+    /// How light transport is estimated; auto: path, but the slot specular by sppm where that is less noisy at equal cost
     #[arg(long, value_parser = estimator(), default_value = "path")]
     estimator: Estimator,
     /// Scatterings between the light and the first visible surface at most; 0 is direct light [default: no limit]
@@ -196,7 +196,7 @@ fn cache() -> Result<Cache> {
 }
 
 fn estimator() -> impl TypedValueParser<Value = Estimator> {
-    const ALL: [Estimator; 2] = [Estimator::Path, Estimator::Sppm];
+    const ALL: [Estimator; 3] = [Estimator::Path, Estimator::Sppm, Estimator::Auto];
     PossibleValuesParser::new(ALL.map(estimator_name)).try_map(|name| {
         let found = ALL.into_iter().find(|estimator| estimator_name(*estimator) == name);
         found.ok_or_else(|| format!("there is no estimator {name:?}"))

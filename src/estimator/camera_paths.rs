@@ -6,7 +6,7 @@
 //!
 //! found by running into the light (surface) and by choosing a point of it (light, connect), weighted by the balance heuristic.
 
-use super::paths::{Paths, Walk};
+use super::paths::{Paths, Walk, light_paths};
 use super::view::View;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -109,7 +109,7 @@ pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedSce
         push: shaders::LightPush {
             emitter_count: scene.emitter_count,
             depth,
-            light_paths: view.pixel_count(),
+            light_paths: light_paths(scene, view),
             disc_area: (std::f64::consts::PI * scene.radius * scene.radius) as f32,
             middle: scene.middle_rs.as_vec3().to_array(),
         },

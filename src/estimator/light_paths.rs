@@ -1,13 +1,14 @@
 //! Paths from lights, pass by pass (glsl/particle/, glsl/path/): emit, then for each vertex intersect, surface, camera, splat, scatter.
 //!
-//! They find what camera paths find badly: light of small or far lights that mirrors, water and glass bring to diffuse surfaces. Each
-//! vertex from the second on is connected to the camera through its diffuse lobe, which is the slot `caustics` or `diffuse`; the
-//! balance heuristic shares every such path with the camera's (glsl/path/mis.glsl). Scenes without glossy surfaces do without.
+//! They find what camera paths find badly: light of small or far lights that mirrors, water and glass bring to diffuse surfaces. So most are
+//! sent to glossy surfaces (`frame/rays/targets.rs`). Each vertex from the second on is connected to the camera through its diffuse lobe,
+//! which is the slot `caustics` or `diffuse`; the balance heuristic shares every such path with the camera's (glsl/path/mis.glsl).
+//! Scenes without glossy surfaces do without.
 
 use super::paths::{Paths, Walk, camera_rays};
 use super::sums::SlotSums;
 use super::view::View;
-use crate::frame::rays::TracedScene;
+use crate::frame::rays::{TargetShares, TracedScene};
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
 use crate::shaders::particle as shaders;
@@ -98,9 +99,12 @@ pub(super) fn scale_of(scene: &TracedScene) -> f32 {
 /// Starts the swarm's paths.
 pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, swarm: &Swarm) {
     paths.clear_queues(graph, Walk::FromLight);
+    // Photons lie where light falls.
+    let shares = if paths.variants.photons == 0 { scene.target_shares } else { TargetShares::default() };
     let emit = shaders::Emit {
         scene_rays: paths.rays.clone(),
         scene_lights: paths.lights.clone(),
+        light_targets: paths.targets.clone(),
         new_paths: paths.started(),
         far_surfaces: u32::from(scene.far_surfaces),
         push: shaders::EmitPush {
@@ -108,9 +112,11 @@ pub(super) fn emit(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, vi
             first_path: swarm.first_path,
             path_count: swarm.path_count,
             seed: swarm.seed,
-            light_paths: view.pixel_count(),
+            light_paths: view.light_path_count() as f32,
             radius: scene.radius as f32,
             middle: scene.middle_rs.as_vec3().to_array(),
+            target_count: shares.count,
+            target_share: (1.0 - shares.anywhere) as f32,
         },
     };
     graph.pass("particle/emit", emit).note("paths", u64::from(swarm.path_count)).threads([swarm.path_count, 1, 1]);
@@ -144,7 +150,7 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view
         push: shaders::CameraPush {
             rays: camera_rays(view),
             size: view.size,
-            light_paths: view.pixel_count(),
+            light_paths: view.light_path_count() as f32,
             reserved: 0,
         },
     };

@@ -12,7 +12,8 @@ use super::light_paths::{self, Splats, Swarm, add_splats};
 use super::options::PathOptions;
 use super::paths::Paths;
 use super::sums::{SlotSums, scatter_sums, seed_of_half, seed_of_sample};
-use super::view::{EstimateRequest, View};
+use super::view::{EstimateRequest, LIGHT_PATHS_PER_PIXEL, View};
+use crate::frame::rays::TracedScene;
 use crate::graph::{Graph, GraphDescription};
 use crate::slot::CausticPaths;
 use crate::vulkan::{Pipelines, VulkanError};
@@ -80,7 +81,7 @@ impl PathTracer {
         [first, count]: [u32; 2],
     ) -> Result<Vec<[f32; 4]>, VulkanError> {
         let scene = self.work.scene();
-        let capacity = capacity(view, count);
+        let capacity = capacity(&scene, view, count);
         let samples_per_wave = (capacity / (64 * block_count)).min(count);
         let mut texels = Vec::new();
         for done in (0..count).step_by(samples_per_wave as usize) {
@@ -144,13 +145,13 @@ impl PathTracer {
     ) -> Result<(), VulkanError> {
         let scene = self.work.scene();
         let limit = self.work.store.device().limits().max_storage_buffer_range;
-        let all = view.size[0] * view.size[1];
-        let capacity = capacity(view, count);
+        let all = view.light_path_count();
+        let capacity = capacity(&scene, view, count);
         for sample in first..first + count {
             for first_path in (0..all).step_by(capacity as usize) {
                 let swarm = Swarm {
-                    first_path,
-                    path_count: capacity.min(all - first_path),
+                    first_path: first_path as u32,
+                    path_count: (all - first_path).min(u64::from(capacity)) as u32,
                     seed: seed_of_sample(seed_of_half(view.seed, half), sample),
                 };
                 let mut depth = 0;
@@ -211,7 +212,7 @@ impl Estimating for PathTracer {
         let block_count = blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
         let wave = Wave { first_block: 0, block_count, sample_count: 1, first_sample: 0, seed: view.seed };
         let mut graph = Graph::going_on(&mut self.work.store);
-        let paths = Paths::declare(&mut graph, &scene, view, capacity(view, 1));
+        let paths = Paths::declare(&mut graph, &scene, view, capacity(&scene, view, 1));
         let sums = Sums::declare(&mut graph, &wave);
         camera_paths::generate(&mut graph, &paths, view, &wave);
         for depth in 0..last_depth(view, 0, 1).min(2) {
@@ -258,9 +259,10 @@ fn blocks_per_run(blocks: u32) -> u32 {
 }
 
 /// Paths that memory is held for, when `count` samples of every pixel are taken.
-fn capacity(view: &View, count: u32) -> u32 {
+fn capacity(scene: &TracedScene, view: &View, count: u32) -> u32 {
     let paths = 64 * blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
-    paths * (WAVE_PATHS / paths).clamp(1, count.max(1))
+    let per_pixel = if scene.needs_light_paths(view.bounces) { LIGHT_PATHS_PER_PIXEL } else { 1 };
+    paths * (WAVE_PATHS / paths).clamp(1, count.saturating_mul(per_pixel).max(1))
 }
 
 /// Up to which vertex a submission goes that starts with vertex number `depth`; the last vertex has number `bounces + beyond`.

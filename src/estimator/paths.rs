@@ -6,10 +6,10 @@
 use ash::vk;
 
 use super::view::View;
-use crate::frame::rays::TracedScene;
+use crate::frame::rays::{TargetShares, TracedScene};
 use crate::graph::bindings::{BufferRef, Uniform};
 use crate::graph::{Dependence, Graph, ReadBack};
-use crate::shaders::groups::{self, Connections, Lobes, NewPaths, SceneLights, SceneRays};
+use crate::shaders::groups::{self, Connections, LightTargets, Lobes, NewPaths, SceneLights, SceneRays};
 use crate::shaders::{path as shaders, types};
 use crate::slot::{CausticPaths, PixelFilter, Slot};
 
@@ -63,6 +63,7 @@ impl Variants {
 pub(super) struct Paths {
     pub(super) rays: SceneRays,
     pub(super) lights: SceneLights,
+    pub(super) targets: LightTargets,
     pub(super) lobes: Lobes,
     pub(super) variants: Variants,
     pub(super) camera: Uniform<types::Camera>,
@@ -95,6 +96,7 @@ impl Paths {
         Paths {
             rays: scene.rays(graph),
             lights: scene.lights(graph),
+            targets: scene.targets(graph),
             lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
             variants: Variants::of(scene, view),
             camera: graph.upload("path.camera", &[view.camera], Dependence::CAMERA).uniform(),
@@ -171,7 +173,7 @@ impl Paths {
         meet(graph);
         // What scatters at the first visible surface is no bounce, and that is where the paths of the camera begin.
         if view.bounces.is_none_or(|bounces| depth + walk.flag() <= bounces) {
-            self.scatter(graph, walk, depth);
+            self.scatter(graph, scene, view, walk, depth);
         }
         self.tally(graph, walk, depth);
     }
@@ -217,6 +219,7 @@ impl Paths {
         let pixels = view.size.map(|side| side as f32);
         let surface = shaders::Surface {
             scene_rays: self.rays.clone(),
+            light_targets: self.targets.clone(),
             paths: self.group(walk, depth),
             path_hits: self.hits.texels(FLOATS),
             camera: self.camera.clone(),
@@ -230,7 +233,7 @@ impl Paths {
                 depth,
                 rays: camera_rays(view),
                 pixel_size: pixels.map(|side| 2.0 / side),
-                light_paths: view.pixel_count(),
+                light_paths: light_paths(scene, view),
                 path_count: self.capacity,
                 ends: u32::from(ends),
             },
@@ -239,7 +242,7 @@ impl Paths {
     }
 
     /// Sends the paths on from vertex number `depth`.
-    fn scatter(&self, graph: &mut Graph<'_>, walk: Walk, depth: u32) {
+    fn scatter(&self, graph: &mut Graph<'_>, scene: &TracedScene, view: &View, walk: Walk, depth: u32) {
         let scatter = shaders::Scatter {
             scene_rays: self.rays.clone(),
             paths: self.group(walk, depth),
@@ -251,9 +254,15 @@ impl Paths {
                 new_paths: self.active(depth + 1).read_write(),
             },
             lobes: self.lobes.clone(),
-            push: shaders::ScatterPush { depth, reserved: 0 },
+            push: shaders::ScatterPush { depth, flux: self.flux(scene), light_paths: light_paths(scene, view) },
         };
         graph.pass(&walk.pass("scatter"), scatter).threads_indirect(self.alive, 0);
+    }
+
+    /// What a light's path carries at its first vertex, on the average, W (luminance).
+    fn flux(&self, scene: &TracedScene) -> f32 {
+        let sent = if self.variants.photons == 0 { scene.target_shares.flux } else { 1.0 };
+        (scene.power * sent) as f32
     }
 
     /// Asks for all that the next submission goes on from, and for the totals of this one: rays, and paths that go on.
@@ -267,6 +276,12 @@ impl Paths {
         }
         graph.read_back_buffer(self.totals)
     }
+}
+
+/// How many light paths there are for a sample of all pixels, and where they are sent.
+pub(super) fn light_paths(scene: &TracedScene, view: &View) -> types::LightPaths {
+    let TargetShares { anywhere, targeted, .. } = scene.target_shares;
+    types::LightPaths { count: view.light_path_count() as f32, anywhere: anywhere as f32, targeted: targeted as f32 }
 }
 
 /// Camera rays per solid angle on the axis, or per area across an orthographic view, for one sample of every pixel.

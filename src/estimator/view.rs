@@ -7,6 +7,9 @@ use crate::scene::CameraView;
 use crate::shaders::types;
 use crate::slot::{CausticPaths, PixelFilter};
 
+/// Light paths for each camera path. They are short, and the caustics that they alone find are the noisiest light there is.
+pub(super) const LIGHT_PATHS_PER_PIXEL: u32 = 4;
+
 /// What is asked of an estimator; the samples to come do not change it, they only lessen its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct EstimateRequest {
@@ -44,8 +47,13 @@ impl View {
         }
     }
 
-    /// Pixels, and light paths a sample.
+    /// Pixels, and photon paths a pass.
     pub(super) fn pixel_count(&self) -> f32 {
         self.size[0] as f32 * self.size[1] as f32
+    }
+
+    /// Light paths of the path tracer a sample.
+    pub(super) fn light_path_count(&self) -> u64 {
+        u64::from(LIGHT_PATHS_PER_PIXEL) * u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }

@@ -57,6 +57,7 @@ pub fn estimator_name(estimator: Estimator) -> &'static str {
     match estimator {
         Estimator::Path => "path",
         Estimator::Sppm => "sppm",
+        Estimator::Auto => "auto",
     }
 }
 

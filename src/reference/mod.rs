@@ -11,6 +11,7 @@
 //! ```
 
 mod about;
+mod auto;
 mod blocks;
 mod cache;
 mod error;

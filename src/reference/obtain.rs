@@ -92,9 +92,7 @@ impl<'a> Job<'a> {
         Work {
             about: About::new(scene, scene_name, request),
             device: context.device().name,
-            source: Box::new(move || {
-                source(context, scene, request).map(|source| Box::new(source) as Box<dyn SampleSource>)
-            }),
+            source: Box::new(move || source(context, scene, request)),
         }
     }
 }

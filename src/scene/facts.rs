@@ -68,8 +68,7 @@ impl Scene {
             facts.emissive |= !facts.emissive && self.shines(instance);
             facts.diffuse |= has_diffuse_lobe(material);
             facts.specular |= has_specular_lobe(material);
-            facts.glossy |= has_specular_lobe(material)
-                && (material.roughness < GLOSSY_ROUGHNESS || material.metallic_roughness_texture.is_some());
+            facts.glossy |= is_glossy(material);
             facts.transmissive |= transmits(material);
         }
         for light in self.placed_lights().iter().filter(|light| light.intensity.iter().any(|&channel| channel > 0.0)) {
@@ -96,6 +95,12 @@ pub(crate) fn has_specular_lobe(material: &Material) -> bool {
     let colored = material.specular_color.iter().any(|&channel| channel > 0.0);
     let dielectric = material.specular > 0.0 && material.ior != 1.0 && colored;
     !material.unlit && (material.metallic > 0.0 || dielectric || transmits(material))
+}
+
+/// Whether the material has a specular lobe anywhere that is narrow enough to make visible caustics.
+pub(crate) fn is_glossy(material: &Material) -> bool {
+    has_specular_lobe(material)
+        && (material.roughness < GLOSSY_ROUGHNESS || material.metallic_roughness_texture.is_some())
 }
 
 fn transmits(material: &Material) -> bool {

@@ -73,4 +73,4 @@ pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;
 pub(crate) use emission::EmissiveCells;
 pub(crate) use extent::{Extent, Shape};
-pub(crate) use facts::has_specular_lobe;
+pub(crate) use facts::{has_specular_lobe, is_glossy};

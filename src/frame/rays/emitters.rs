@@ -8,7 +8,7 @@ use super::emissive_cells::CellTables;
 use super::triangles::TracedTriangle;
 use crate::scene::{LightKind, PlacedLight, Scene};
 
-const TRIANGLE: u32 = 1 << 31;
+pub(super) const TRIANGLE: u32 = 1 << 31;
 
 /// The table, and what it means for triangles.
 pub(super) struct EmitterTable {
@@ -26,10 +26,11 @@ pub(super) struct EmitterTable {
     pub(super) triangle_power: f64,
 }
 
-struct Entry {
-    what: u32,
+/// What can be drawn, with its share.
+pub(super) struct Entry {
+    pub(super) what: u32,
     /// W, luminance.
-    power: f64,
+    pub(super) power: f64,
 }
 
 /// The table of a scene within a sphere of `radius` metres; `triangles` are those of its instances, one after the other.
@@ -89,11 +90,12 @@ fn extent_of(light: &PlacedLight, radius: f64) -> f64 {
     }
 }
 
-fn luminance(color: [f32; 3]) -> f64 {
+pub(super) fn luminance(color: [f32; 3]) -> f64 {
     0.2126 * f64::from(color[0]) + 0.7152 * f64::from(color[1]) + 0.0722 * f64::from(color[2])
 }
 
-fn records_of(entries: &[Entry], total: f64) -> Vec<[u32; 4]> {
+/// Drawn by their power.
+pub(super) fn records_of(entries: &[Entry], total: f64) -> Vec<[u32; 4]> {
     let powers: Vec<f64> = entries.iter().map(|entry| entry.power).collect();
     let places = alias_table(&powers, total).into_iter().zip(entries);
     places

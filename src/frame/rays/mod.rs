@@ -4,8 +4,10 @@ mod alias_table;
 mod emissive_cells;
 mod emitters;
 mod sobol;
+mod targets;
 mod texels;
 mod traced_scene;
 mod triangles;
 
+pub(crate) use self::targets::TargetShares;
 pub(crate) use self::traced_scene::{TracedScene, surfaces_key, traced_key};

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::emitters::{EmitterTable, emitter_table};
 use super::sobol::sobol_points;
+use super::targets::{Reach, TargetShares, Targets, targets};
 use super::texels::Texels;
 use super::triangles::{TracedTriangle, flatten};
 use crate::frame::light_set::{punctual_light, shining_lights};
@@ -17,7 +18,7 @@ use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
 use crate::scene::{Alpha, Bounds, Cutout, Extent, Facts, Material, Scene, cutout};
-use crate::shaders::groups::{SceneLights, SceneRays};
+use crate::shaders::groups::{LightTargets, SceneLights, SceneRays};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
 
@@ -60,11 +61,14 @@ pub(crate) struct TracedScene {
     pub(crate) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
     pub(crate) power: f64,
+    /// Where those paths are sent.
+    pub(crate) target_shares: TargetShares,
     buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
 }
 
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
 const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
@@ -84,6 +88,8 @@ impl TracedScene {
             .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index)))
             .collect();
         records.extend(&cells.records);
+        let Targets { records: target_records, densities: target_densities, shares: target_shares } =
+            targets(&triangles, scene.materials(), &lights, &emitters, Reach { origin, radius });
         let cutouts: Vec<Cutout> =
             scene.materials().iter().map(|material| cutout(material, scene.textures(), facts.vertex_colors)).collect();
         let bvh_triangles: Vec<BvhTriangle> = triangles
@@ -128,6 +134,8 @@ impl TracedScene {
             upload("traced.emitters", bytemuck::cast_slice(&emitters), WORDS)?,
             upload("traced.emissive", bytemuck::cast_slice(&triangle_records), WORDS)?,
             upload("traced.lights", bytemuck::cast_slice(&light_records), WORDS)?,
+            upload("traced.targets", bytemuck::cast_slice(&target_records), WORDS)?,
+            upload("traced.target_densities", bytemuck::cast_slice(&target_densities), FLOAT)?,
             upload("traced.sobol", bytemuck::cast_slice(&sobol_points()), WORDS)?,
         ];
         let revisions = scene.revisions();
@@ -164,6 +172,7 @@ impl TracedScene {
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
             light_paths: facts.glossy && !emitters.is_empty(),
             power,
+            target_shares,
             buffers,
         })
         .inspect(|_| tracing::debug!("traced scene of revision {revisions:?}"))
@@ -211,6 +220,13 @@ impl TracedScene {
             emissive_cells: u32::from(self.emissive_cells),
             wide: u32::from(self.wide),
         }
+    }
+
+    /// Where light paths are sent.
+    pub(crate) fn targets(&self, graph: &mut Graph<'_>) -> LightTargets {
+        let lights = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS;
+        let mut bind = |name: &str| self.bind(graph, name, self.key, lights);
+        LightTargets { targets: bind("traced.targets"), target_densities: bind("traced.target_densities") }
     }
 
     /// What shines on it.

@@ -20,6 +20,12 @@ pub(super) struct TracedTriangle {
 }
 
 impl TracedTriangle {
+    /// Without vertex normals.
+    #[cfg(test)]
+    pub(super) fn flat(corners: [Vec3; 3], material: u32) -> TracedTriangle {
+        TracedTriangle { corners, material, normals: None }
+    }
+
     fn edges(&self) -> [Vec3; 2] {
         [self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]]
     }
@@ -31,9 +37,19 @@ impl TracedTriangle {
 
     /// Its distance from a point, at least, metres.
     pub(super) fn nearest(&self, point: DVec3) -> f64 {
-        let middle = self.corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() / 3.0;
+        let middle = self.middle();
         let radius = self.corners.iter().map(|corner| corner.as_dvec3().distance(middle)).fold(0.0, f64::max);
         middle.distance(point) - radius
+    }
+
+    pub(super) fn middle(&self) -> DVec3 {
+        self.corners.iter().map(|corner| corner.as_dvec3()).sum::<DVec3>() / 3.0
+    }
+
+    /// Of its front; zero if it has no area.
+    pub(super) fn normal(&self) -> DVec3 {
+        let [edge1, edge2] = self.edges().map(Vec3::as_dvec3);
+        edge1.cross(edge2).normalize_or_zero()
     }
 
     /// m²
