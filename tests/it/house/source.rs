@@ -128,6 +128,10 @@ impl File {
         let tokens = without_tests(tokens_of(text));
         let (mut names, mut globs) = (BTreeMap::new(), Vec::new());
         for (index, _) in tokens.iter().enumerate().filter(|(_, token)| *token == "use") {
+            // `impl Trait + use<>` brings nothing in.
+            if tokens.get(index + 1).is_some_and(|next| next == "<") {
+                continue;
+            }
             read_use(&tokens[index + 1..], &mut Vec::new(), &mut names, &mut globs);
         }
         File { path, items: items_of(&tokens), tokens, names, globs }
