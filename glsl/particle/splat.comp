@@ -2,11 +2,13 @@
 #include "lib/prelude.glsl"
 #include "groups/connections.glsl"
 #include "groups/scene_rays.glsl"
+#include "lib/finite.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
 
 // Adds what one light path's vertex sends to the camera to its pixel, if nothing is in between. Sums are 64-bit integers in two
-// words, in units of 1/`scale`: whatever the order of the additions, the same sum.
+// words, in units of 1/`scale`: whatever the order of the additions, the same sum. What is no number is left out and counted in the last
+// word but one.
 
 layout(local_size_x = 64) in;
 
@@ -42,6 +44,10 @@ void main() {
         return;
     }
     vec3 light = texelFetch(connection_light, 2 * int(path)).xyz;
+    if (!is_finite(light)) {
+        atomicAdd(splats[splats.length() - 2], 1u);
+        return;
+    }
     uint place = 6u * floatBitsToUint(direction.w);
     add(place, light.x);
     add(place + 2u, light.y);

@@ -54,9 +54,12 @@ impl Sums {
 
     /// Adds the samples of a wave that has come to its end.
     pub(super) fn add(&self, graph: &mut Graph<'_>, paths: &Paths, wave: &Wave) {
+        let dropped = graph.buffer::<u32>("path.dropped", 1);
+        graph.fill_buffer("path/clear-dropped", dropped, 0);
         let resolve = shaders::Resolve {
             path_radiance: paths.radiance.read_write(),
             slot_sums: self.0.read_write(),
+            dropped_samples: dropped.read_write(),
             push: shaders::ResolvePush {
                 paths_per_sample: wave.paths_per_sample(),
                 sample_count: wave.sample_count,
@@ -64,7 +67,7 @@ impl Sums {
                 slot_count: Slot::ALL.len() as u32,
             },
         };
-        graph.pass("path/resolve", resolve).threads([wave.paths_per_sample(), 1, 1]);
+        graph.pass("path/resolve", resolve).count("dropped", dropped, 0).threads([wave.paths_per_sample(), 1, 1]);
         graph.want_buffer(self.0);
     }
 }

@@ -53,7 +53,8 @@ impl Splats {
                 limit: format!("{} pixels", u64::from(limit) / (8 * WORDS_PER_PIXEL as u64)),
             });
         }
-        let buffer = graph.buffer("particle.splats", words);
+        // Behind the sums: how many were left out, since they were no numbers.
+        let buffer = graph.buffer("particle.splats", words + 2);
         graph.keep_for_read_back(buffer);
         Ok(Splats { buffer, scale: scale_of(scene) })
     }
@@ -161,5 +162,9 @@ fn connect_to_camera(graph: &mut Graph<'_>, paths: &Paths, splats: &Splats, view
         splats: splats.buffer.read_write(),
         push: shaders::SplatPush { scale: splats.scale, reserved: 0 },
     };
-    graph.pass("particle/splat", splat).count("rays", paths.connections, 3).threads_indirect(paths.connections, 0);
+    graph
+        .pass("particle/splat", splat)
+        .count("rays", paths.connections, 3)
+        .count("dropped", splats.buffer, splats.buffer.count() - 2)
+        .threads_indirect(paths.connections, 0);
 }

@@ -56,9 +56,10 @@ fn slivers_spoil_no_sum() {
 #[test]
 fn built_in_scenes_drop_nothing() {
     let session = Session::open();
-    for name in ["ring", "textured", "lights"] {
+    let hybrid = ["ring", "textured", "lights"].map(|name| (name, Technique::Hybrid));
+    for (name, technique) in hybrid.into_iter().chain([("cornell-point", Technique::Path)]) {
         let scene = builtin(name);
-        let [rows, dropped] = timed(&scene, Technique::Hybrid, &session, scene.camera_view(None).expect("a camera"));
+        let [rows, dropped] = timed(&scene, technique, &session, scene.camera_view(None).expect("a camera"));
         assert!(rows > 0 && dropped == 0, "{name}: {rows} rows, {dropped} dropped");
     }
 }
