@@ -100,7 +100,10 @@ fn the_reader_sees_paths_of_every_form() {
         ("a.rs", "fn f() { let x = crate::b::made(1); super::c::other(); } // crate::nothing::at_all"),
         ("b/mod.rs", "mod inner;\npub(crate) use inner::{made, Kind as Sort};\nfn g() { inner::made(\"crate::c\") }"),
         ("b/inner.rs", "pub fn made() {} pub enum Kind {} #[cfg(test)] mod tests { use crate::a::f; }"),
-        ("c.rs", "use crate::{b::{self, Sort}, Thing};\npub struct Thing; pub fn other() -> impl Fn() + use<> { || {} }"),
+        (
+            "c.rs",
+            "use crate::{b::{self, Sort}, Thing};\npub struct Thing; pub fn other() -> impl Fn() + use<> { || {} }",
+        ),
     ];
     let tree = Tree::of(files.map(|(path, text)| (PathBuf::from(path), text.to_owned())));
     let edges: Vec<String> =
