@@ -1,7 +1,7 @@
 //! What every technique shares: the scene on the device, what rays meet, G-buffer, light views, composition, tone mapping.
 //!
-//! Everything here works in *render space* (suffix `_rs`): the world's axes in metres, minus a fixed origin in the
-//! middle of the scene, so that a scene far from the world's origin loses no precision in 32-bit floats.
+//! Everything here works in *render space* (suffix `_rs`): the world's axes in metres, minus an origin among
+//! its surfaces (`src/scene/extent.rs`), so that a scene far from the world's origin loses no precision in 32-bit floats.
 
 pub(crate) mod camera;
 pub(crate) mod check;
