@@ -41,6 +41,7 @@ struct PreparedRay {
     vec3 shear_y;
     vec3 shear_z;
     float slowness;  // lengths of the direction for a meter along its largest axis
+    float start;     // nearer than this, in lengths of the direction, rays were moved off the surface that they leave (lib/ray_offset.glsl)
 };
 
 PreparedRay prepare_ray(vec3 origin, vec3 direction) {
@@ -57,6 +58,7 @@ PreparedRay prepare_ray(vec3 origin, vec3 direction) {
     ray.octant = (ray.backwards.x ? 0u : 4u) | (ray.backwards.y ? 0u : 2u) | (ray.backwards.z ? 0u : 1u);
     vec3 inverse = ray.inverse_direction;
     ray.slowness = 1.0 / largest;
+    ray.start = uintBitsToFloat(texelFetch(bvh_nodes, textureSize(bvh_nodes) - 1).x) * ray.slowness;
     if (size.x >= largest) {
         ray.shear_x = vec3(-direction.y * inverse.x, 1.0, 0.0);
         ray.shear_y = vec3(-direction.z * inverse.x, 0.0, 1.0);
@@ -117,7 +119,7 @@ bool meets_triangle(uint place, PreparedRay ray, bool to_surface, inout Hit hit)
     vec3 z = vec3(dot(a, ray.shear_z), dot(b, ray.shear_z), dot(c, ray.shear_z));
     float distance = dot(shares, z);
     float end = to_surface ? hit.distance * END : hit.distance;
-    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > 0.0 && distance < end;
+    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > ray.start && distance < end;
     // How near the ray's start rounding may matter, a power of two by the triangle's size (src/scene/bvh.rs).
     float doubtful = uintBitsToFloat(floatBitsToUint(corner1.w) & 0x7f800000u) * ray.slowness;
     if (WIDE != 0u && meets && distance < doubtful) {
