@@ -61,14 +61,7 @@ impl Graph<'_> {
             self.keep_image(copy, "history");
         }
         self.start_image(name, last, &found);
-        let swap = Some([format!("{name}.last"), format!("{name}.next")]);
-        self.kept.push(KeptUse {
-            name: name.to_owned(),
-            resource: next.id,
-            swap,
-            depends: found.depends,
-            age: found.age,
-        });
+        self.note_use(name, next.id, true, &found);
         HistoryImage { last, next, age: found.age }
     }
 
@@ -86,14 +79,7 @@ impl Graph<'_> {
             self.keep_buffer(copy, "history");
         }
         self.start_buffer(name, last, &found);
-        let swap = Some([format!("{name}.last"), format!("{name}.next")]);
-        self.kept.push(KeptUse {
-            name: name.to_owned(),
-            resource: next.id,
-            swap,
-            depends: found.depends,
-            age: found.age,
-        });
+        self.note_use(name, next.id, true, &found);
         HistoryBuffer { last, next, age: found.age }
     }
 
@@ -109,9 +95,8 @@ impl Graph<'_> {
         let image = self.image_with(name, info);
         self.keep_image(image, "state");
         self.start_image(name, image, &found);
-        let (name, depends, age) = (name.to_owned(), found.depends, found.age);
-        self.kept.push(KeptUse { name, resource: image.id, swap: None, depends, age });
-        (image, age)
+        self.note_use(name, image.id, false, &found);
+        (image, found.age)
     }
 
     /// A buffer that passes modify in place, and its age.
@@ -126,9 +111,14 @@ impl Graph<'_> {
         let buffer = self.buffer::<T>(name, count);
         self.keep_buffer(buffer, "state");
         self.start_buffer(name, buffer, &found);
+        self.note_use(name, buffer.id, false, &found);
+        (buffer, found.age)
+    }
+
+    fn note_use(&mut self, name: &str, resource: usize, in_two_copies: bool, found: &Found) {
+        let swap = in_two_copies.then(|| ["last", "next"].map(|copy| format!("{name}.{copy}")));
         let (name, depends, age) = (name.to_owned(), found.depends, found.age);
-        self.kept.push(KeptUse { name, resource: buffer.id, swap: None, depends, age });
-        (buffer, age)
+        self.kept.push(KeptUse { name, resource, swap, depends, age });
     }
 
     fn found(&self, name: &str, depends: u64, advance: Advance) -> Found {
