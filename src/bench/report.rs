@@ -93,12 +93,18 @@ pub struct Run {
     pub frames: u32,
     /// Frames rendered before them, after the first one.
     pub warmup: u32,
-    /// GPU time of a whole frame made anew, its passes overlapping as the driver likes.
+    /// Frames rendered before those of warm-up, so that what the methods keep over frames has settled.
+    #[serde(default)]
+    pub lead_in: u32,
+    /// GPU time of a whole frame made anew, its passes overlapping as the driver likes. What methods keep over frames is at hand: a steady frame.
     pub frame_ms: Spread,
     /// GPU time of the same frame with full barriers between its passes. The passes below are parts of this one.
     pub serialised_ms: Spread,
     /// GPU time of a frame in which nothing changed since the one before.
     pub unchanged_ms: Spread,
+    /// GPU time of a frame made anew without a past: all that methods keep over frames is zero. Null if nothing is kept.
+    #[serde(default)]
+    pub cold_ms: Option<Spread>,
     /// Host time of a whole frame made anew, from the call to the finished frame.
     pub host_ms: Spread,
     /// Host time of a frame in which nothing changed.

@@ -114,6 +114,10 @@ pub fn rows(run: &Run) -> Vec<Row> {
         "passes overlap as the driver likes; {} ms on the host",
         units::milliseconds(run.host_ms.median)
     )));
+    if let Some(cold) = run.cold_ms {
+        let text = format!("all made anew without a past; the others came after {} frames", run.lead_in);
+        rows.push(Row::frame("cold frame").spread(cold).text(text));
+    }
     rows.push(Row::frame("unchanged frame").spread(run.unchanged_ms).text(format!(
         "nothing changed since the last; {} ms on the host",
         units::milliseconds(run.unchanged_host_ms.median)
@@ -231,14 +235,23 @@ mod tests {
         let rows = rows(&example_run());
         let labels: Vec<String> = rows.iter().map(Row::label).collect();
         let passes = ["gbuffer/draw", "light-views", "  draw", "  reduce", "rsm/gather", "caustics/photons"];
-        let frame = ["unexplained", "serialised frame", "frame", "unchanged frame", "compile", "memory", "settings"];
+        let frame = [
+            "unexplained",
+            "serialised frame",
+            "frame",
+            "cold frame",
+            "unchanged frame",
+            "compile",
+            "memory",
+            "settings",
+        ];
         assert_eq!(labels, [&passes[..], &frame[..]].concat());
         assert_eq!(rows[0].cells(), ["4.500", "4.000", "5.000", "22.0 %", "262 k triangles"]);
         assert_eq!(rows[4].text, "786 k invocations, 1.2 G vpls");
         assert_eq!(rows[5].cells(), ["skipped", "", "", "", "no specular surface"]);
         assert_eq!(rows[6].cells(), ["0.500", "", "", "2.4 %", ""]);
-        assert_eq!(rows[11].text, "100 MiB: scene 80.0 MiB, gbuffer 20.0 MiB");
-        assert!(rows[12].text.contains("rsm.vpls=256"), "{}", rows[12].text);
+        assert_eq!(rows[12].text, "100 MiB: scene 80.0 MiB, gbuffer 20.0 MiB");
+        assert!(rows[13].text.contains("rsm.vpls=256"), "{}", rows[13].text);
     }
 
     #[test]

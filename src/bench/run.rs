@@ -37,6 +37,8 @@ pub struct Options {
     pub frames: u32,
     /// Frames of each contender before the rounds, after its first one.
     pub warmup: u32,
+    /// Frames of each contender before those, so that what it keeps over frames has settled; `None`: what its methods need.
+    pub lead_in: Option<u32>,
     /// A contender begins no frame of warm-up and no round after it has rendered for this long, seconds; its first round it
     /// always has. `None`: all of them.
     pub max_seconds: Option<f64>,
@@ -52,6 +54,10 @@ impl Options {
     /// How often one contender reports progress: for each frame of its timings, and for each piece.
     pub fn frames_per_contender(&self) -> u64 {
         1 + u64::from(self.warmup) + 3 * u64::from(self.frames) + self.pieces.len() as u64
+    }
+
+    fn lead_in(&self, settings: &Settings) -> u32 {
+        self.lead_in.unwrap_or(settings.lead_in())
     }
 
     /// Whether a contender that has rendered for so long has had its time.
@@ -100,8 +106,8 @@ struct Contender {
 /// 2. a frame made anew, timed pass by pass;
 /// 3. a frame in which nothing has changed, timed as a whole.
 ///
-/// No image is read back in these. Then pieces are repeated on their own, as often as there are rounds. `progress` is called after every frame and
-/// every piece. A contender that fails does not stop the others; a piece that none of them has fails them all.
+/// No image is read back in these. Then come the pictures, pieces are repeated on their own, as often as there are rounds, and last, where something
+/// is kept over frames, as many frames are made without a past. `progress` is called after every frame of the rounds and every piece. A contender that fails does not stop the others; a piece that none of them has fails them all.
 pub fn run(
     context: &Context,
     subject: &Subject<'_>,
@@ -171,13 +177,7 @@ impl Contender {
             preset: Some(settings.preset.name().to_owned()),
             error,
         };
-        let (mut renderer, samples) = self.state.map_err(failure)?;
-        let mut piece_alone = Vec::new();
-        for piece in &options.pieces {
-            let alone = alone(&mut renderer, &samples, subject, options, piece);
-            piece_alone.push(alone.map_err(|error| failure(sentence(&error)))?);
-            progress();
-        }
+        let (mut renderer, mut samples) = self.state.map_err(failure)?;
         let (picture, images) = if options.pictures || options.slots {
             let filled = Slot::ALL.into_iter().filter(|slot| options.slots && settings.methods.fills(*slot));
             let request = FrameRequest {
@@ -192,6 +192,16 @@ impl Contender {
         } else {
             (None, None)
         };
+        let mut piece_alone = Vec::new();
+        for piece in &options.pieces {
+            let alone = alone(&mut renderer, &samples, subject, options, piece);
+            piece_alone.push(alone.map_err(|error| failure(sentence(&error)))?);
+            progress();
+        }
+        let lead_in = options.lead_in(settings);
+        if lead_in > 0 {
+            cold(&mut renderer, &mut samples, subject, options).map_err(|error| failure(sentence(&*error)))?;
+        }
         let methods = Slot::ALL.into_iter().map(|slot| (slot, settings.methods.name_of(slot).to_owned()));
         let run = samples.finish(Run {
             scene: subject.name.to_owned(),
@@ -202,6 +212,7 @@ impl Contender {
             camera: subject.camera.name.clone(),
             size: options.size,
             warmup: options.warmup,
+            lead_in,
             load_ms: subject.load_ms,
             piece_alone,
             ..Run::default()
@@ -238,6 +249,9 @@ fn warm_up(
     let start = Instant::now();
     let first = render(renderer, subject, options, Timing::Frame, progress)?.timings;
     samples.add_first(&first);
+    for _ in 0..options.lead_in(renderer.settings()) {
+        samples.add_warmup(&render(renderer, subject, options, Timing::Frame, &mut || ())?.timings);
+    }
     for index in 0..options.warmup {
         if options.over(start.elapsed()) {
             break;
@@ -264,6 +278,21 @@ fn round(
     Ok(())
 }
 
+/// Frames made anew of nothing but the scene.
+fn cold(
+    renderer: &mut Renderer,
+    samples: &mut Samples,
+    subject: &Subject<'_>,
+    options: &Options,
+) -> Result<(), Stopped> {
+    for _ in 0..options.frames {
+        renderer.invalidate();
+        renderer.reset_history();
+        samples.add_cold(&render(renderer, subject, options, Timing::Frame, &mut || ())?.timings);
+    }
+    Ok(())
+}
+
 fn render(
     renderer: &mut Renderer,
     subject: &Subject<'_>,
@@ -278,15 +307,7 @@ fn render(
 
 /// The image alone: what a host shows, before its tone mapping.
 fn request(subject: &Subject<'_>, options: &Options, timing: Timing) -> FrameRequest {
-    FrameRequest {
-        size: options.size,
-        camera: subject.camera.clone(),
-        slots: Vec::new(),
-        image: true,
-        tonemap: None,
-        timing,
-        read_back: false,
-    }
+    FrameRequest { timing, read_back: false, ..FrameRequest::new(options.size, subject.camera.clone()) }
 }
 
 /// An error and its causes, `a: b: c`.

@@ -18,6 +18,7 @@ pub(crate) struct Samples {
     host_ms: Vec<f64>,
     unchanged_ms: Vec<f64>,
     unchanged_host_ms: Vec<f64>,
+    cold_ms: Vec<f64>,
     serialised_ms: Vec<f64>,
     unexplained_ms: Vec<f64>,
     passes: Vec<PassSamples>,
@@ -71,6 +72,12 @@ impl Samples {
     pub(crate) fn add_unchanged(&mut self, timings: &FrameTimings) {
         self.unchanged_ms.push(timings.gpu_ms);
         self.unchanged_host_ms.push(timings.host_ms);
+    }
+
+    /// A frame made anew without a past, timed as a whole.
+    pub(crate) fn add_cold(&mut self, timings: &FrameTimings) {
+        self.add_warmup(timings);
+        self.cold_ms.push(timings.gpu_ms);
     }
 
     /// A frame made anew, timed pass by pass.
@@ -129,6 +136,7 @@ impl Samples {
             frame_ms: spread(&self.frame_ms),
             serialised_ms,
             unchanged_ms: spread(&self.unchanged_ms),
+            cold_ms: Spread::of(&self.cold_ms),
             host_ms: spread(&self.host_ms),
             unchanged_host_ms: spread(&self.unchanged_host_ms),
             upload_ms: self.upload_ms,
@@ -227,6 +235,7 @@ pub(crate) mod tests {
             samples.add_passes(&frame(20.0 + slower, passes)).expect("all timed");
             samples.add_unchanged(&frame(0.25, Vec::new()));
         }
+        samples.add_cold(&frame(30.0, Vec::new()));
         samples
     }
 
@@ -256,6 +265,11 @@ pub(crate) mod tests {
         assert_eq!(run.serialised_ms, Spread { min: 20.0, median: 20.5, p95: 21.0 });
         assert_eq!(run.unchanged_ms.median, 0.25);
         assert_eq!(run.unexplained_ms, 0.5);
+        assert_eq!(
+            run.cold_ms,
+            Some(Spread { min: 30.0, median: 30.0, p95: 30.0 }),
+            "a cold frame is none of the steady ones"
+        );
         let names: Vec<String> = run.passes.iter().map(Pass::full_name).collect();
         assert_eq!(names, ["gbuffer/draw", "light-views/draw", "light-views/reduce", "rsm/gather", "caustics/photons"]);
         assert_eq!(run.passes[1].ms, Spread { min: 5.0, median: 5.0, p95: 5.0 });

@@ -11,6 +11,8 @@ pub(crate) struct Picture<'a> {
     pub(crate) scene: &'a str,
     pub(crate) camera: &'a str,
     pub(crate) frame: u32,
+    /// Frames rendered before the first of its sequence.
+    pub(crate) lead_in: u32,
     pub(crate) size: [u32; 2],
     pub(crate) settings: &'a Settings,
     pub(crate) device: &'a DeviceReport,
@@ -54,6 +56,9 @@ impl Picture<'_> {
                 sampled.push((format!("noise.{part}.rmse"), noise.rmse.to_string()));
                 sampled.push((format!("noise.{part}.rrmse"), noise.rrmse.to_string()));
             }
+        }
+        if self.lead_in > 0 {
+            sampled.push(("lead_in".to_owned(), self.lead_in.to_string()));
         }
         if self.aa > 1 {
             sampled.push(("aa".to_owned(), self.aa.to_string()));

@@ -39,6 +39,10 @@ pub(crate) struct BenchArgs {
     /// Frames of each technique before the rounds, after its first, which is timed apart
     #[arg(long, value_name = "N", default_value_t = 2)]
     warmup: u32,
+    /// Frames of each technique before the rounds so that what it keeps over frames has settled; with any, frames without a past are timed too
+    /// [default: what its methods need; none if no method keeps anything]
+    #[arg(long, value_name = "N")]
+    lead_in: Option<u32>,
     /// Also time a piece on its own, such as caustics/photons/lists: its inputs are made once, it alone is repeated; may be given again
     #[arg(long, value_name = "PIECE")]
     piece: Vec<String>,
@@ -126,7 +130,8 @@ impl Bench<'_> {
         let pictures = args.images.is_some();
         let (size, frames, warmup) = (args.scene_args.size, args.frames, args.warmup);
         let (pieces, slots) = (args.piece.clone(), args.reference.is_some());
-        let options = Options { size, frames, warmup, max_seconds: None, pictures, slots, pieces };
+        let lead_in = args.lead_in;
+        let options = Options { size, frames, warmup, lead_in, max_seconds: None, pictures, slots, pieces };
         let cache = args.reference.map_or(Ok(None), |_| reference::open_cache(args.no_cache))?;
         let context = invocation.context()?;
         if let Some(folder) = &args.images {
@@ -196,6 +201,7 @@ impl Bench<'_> {
             scene: &run.scene,
             camera: &run.camera,
             frame: 0,
+            lead_in: run.lead_in,
             size: run.size,
             settings,
             device: &device,

@@ -9,13 +9,14 @@ use irradia::image::tone_map;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::IMAGE;
 use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, ToneMap};
-use irradia::scene::CameraView;
+use irradia::scene::{CameraView, FRAME_RATE};
 
 use super::attributes::Picture;
 use super::files;
 use super::invocation::{Invocation, WrongUsage};
 use super::method_args::MethodArgs;
 use super::scene_args::SceneArgs;
+use super::terminal::Progress;
 use super::values::{self, Choice, FrameRange, ImagePath};
 
 /// Render frames of a scene to EXR or PNG files
@@ -32,6 +33,9 @@ pub(crate) struct RenderArgs {
     /// Frames A to B, both included, a file each: out.0007.exr for out.exr, or the number in place of ####
     #[arg(long, value_name = "A..B", value_parser = values::frame_range, conflicts_with = "frame")]
     frames: Option<FrameRange>,
+    /// Frames rendered before the first, for methods that keep something over frames [default: what these methods need; none if no method keeps anything]
+    #[arg(long, value_name = "N")]
+    lead_in: Option<u32>,
     /// Slots that an EXR file holds besides the image, as layers: a list, or all
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::slot_choice())]
     slots: Vec<Choice<Slot>>,
@@ -73,14 +77,22 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     let mut renderer = Renderer::new(&context, settings)?;
     let device = context.device();
 
+    let lead_in = args.lead_in.unwrap_or(renderer.settings().lead_in());
     let FrameRange { first, last } = args.frames.unwrap_or(FrameRange { first: args.frame, last: args.frame });
-    let progress = (first < last).then(|| invocation.terminal.progress(u64::from(last - first) + 1));
+    let frames = (last - first).saturating_add(lead_in.min(first)).saturating_add(1);
+    let progress = (frames > 1).then(|| invocation.terminal.progress(u64::from(frames)));
     let mut spent = Spent::default();
     let mut noise = String::new();
-    for number in first..=last {
+    for number in first.saturating_sub(lead_in)..=last {
         scene.set_frame(number);
-        let request = request(args, args.scene_args.view(&scene)?);
+        let request = request(args, args.scene_args.view(&scene)?, number);
         let rendering = Instant::now();
+        if number < first {
+            renderer.render(&scene, &request.with(|request| request.read_back = false))?;
+            spent.render += rendering.elapsed().as_secs_f64();
+            step(progress.as_ref());
+            continue;
+        }
         let frame = reduced(renderer.render(&scene, &request)?, args);
         spent.render += rendering.elapsed().as_secs_f64();
 
@@ -90,6 +102,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
             scene: &scene.name,
             camera,
             frame: number,
+            lead_in: lead_in.min(first),
             size: frame.size,
             settings: renderer.settings(),
             device: &device,
@@ -100,9 +113,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
         let writing = Instant::now();
         write(&path_of(args, number), format, &frame, &picture)?;
         spent.write += writing.elapsed().as_secs_f64();
-        if let Some(progress) = &progress {
-            progress.step();
-        }
+        step(progress.as_ref());
     }
     drop(progress);
     let (names, [width, height]) = (written_names(args, first, last), args.scene_args.size);
@@ -116,11 +127,19 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     invocation.check_validation(&context)
 }
 
-fn request(args: &RenderArgs, camera: CameraView) -> FrameRequest {
+fn step(progress: Option<&Progress>) {
+    if let Some(progress) = progress {
+        progress.step();
+    }
+}
+
+fn request(args: &RenderArgs, camera: CameraView, number: u32) -> FrameRequest {
     // Supersampled pixels are averaged before they are tone-mapped.
     let display = args.output.format == ImageFormat::Png && args.aa == 1;
     let size = args.scene_args.size.map(|side| side.saturating_mul(args.aa));
     FrameRequest::new(size, camera).with(|request| {
+        request.index = number;
+        request.time_step = if number > 0 { (1.0 / FRAME_RATE) as f32 } else { 0.0 };
         request.slots = Choice::expand(&args.slots, &Slot::ALL);
         request.image = !display;
         request.tonemap = display.then(|| args.tonemap.unwrap_or_default());

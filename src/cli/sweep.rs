@@ -207,7 +207,7 @@ impl Bench<'_> {
         let size = self.grid.size_of(group.scene);
         let slots = self.grid.reference.is_some();
         let (pictures, pieces) = Default::default();
-        let options = Options { size, frames, warmup, max_seconds, pictures, slots, pieces };
+        let options = Options { size, frames, warmup, lead_in: None, max_seconds, pictures, slots, pieces };
         let outcomes = measure(self.context, &subject, &contenders, &options, &mut || ());
         let mut steps = Steps::new(self.terminal, &format!("reference of {name}"));
         let mut references = self

@@ -9,6 +9,15 @@ use super::scene_data::SceneData;
 use crate::scene::Facts;
 use crate::shaders::types;
 
+/// Where in a sequence a frame stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[allow(dead_code, reason = "no method adapts over frames yet; those that do come later")]
+pub(crate) struct FrameTime {
+    pub(crate) index: u32,
+    /// Since the frame before, seconds, not negative.
+    pub(crate) step: f32,
+}
+
 /// The scene on the device, the first visible surfaces, the lights.
 pub(crate) struct FrameInputs<'f> {
     pub(crate) data: &'f SceneData,
@@ -17,6 +26,8 @@ pub(crate) struct FrameInputs<'f> {
     pub(crate) camera: &'f types::Camera,
     /// Radiance where there is no surface, W/(m² sr).
     pub(crate) sky: [f32; 3],
+    #[allow(dead_code, reason = "as above")]
+    pub(crate) time: FrameTime,
     pub(crate) surface: &'f GBuffer,
     pub(crate) set: &'f LightSet,
     /// Present where some method takes them and something shines.

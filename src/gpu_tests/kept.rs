@@ -120,6 +120,28 @@ fn a_frame_that_is_made_again_advances_once() {
     assert_eq!(again, values);
 }
 
+/// Repeats the pass that appends a digit.
+fn repeat(store: &mut Store, digit: u32) {
+    let mut graph = Graph::new(store);
+    let (image, _) = graph.state_image("digits", INFO, 0, Advance::EveryFrame);
+    let push = AppendPush { digit };
+    graph.pass("test/append", Append { image: image.read_write(), push }).threads([8, 8, 1]);
+    graph.want(image);
+    graph.run_again("test/append", Timing::Passes).expect("a repetition");
+}
+
+#[test]
+fn a_repeated_pass_that_changes_a_state_is_noticed() {
+    let session = Session::open();
+    let mut store = session.store();
+    digits(&mut store, 1, 1);
+    let past = store.past();
+    repeat(&mut store, 2);
+    assert_ne!(store.past(), past, "what is kept went on in a frame that was none");
+    store.reset_history();
+    assert_eq!(digits(&mut store, 3, 1).0, 3);
+}
+
 #[test]
 fn a_frame_that_fails_before_it_runs_leaves_the_past_alone() {
     let session = Session::open();

@@ -97,8 +97,16 @@ fn the_bench_times_pieces_alone_and_subtotals_add_up() {
     let subject = Subject { name: "ring", scene: &scene, camera: &camera, load_ms: 0.0 };
     let contenders = [Settings::new(Technique::Direct, Preset::Draft), hybrid()];
     let pieces = vec!["caustics/photons".to_owned()];
-    let options =
-        Options { size: [32, 24], frames: 2, warmup: 0, max_seconds: None, pictures: false, slots: false, pieces };
+    let options = Options {
+        size: [32, 24],
+        frames: 2,
+        warmup: 0,
+        lead_in: None,
+        max_seconds: None,
+        pictures: false,
+        slots: false,
+        pieces,
+    };
     let outcomes = run(&session.context, &subject, &contenders, &options, &mut || ());
     let runs: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("it came through").run).collect();
     let [direct, hybrid] = &runs[..] else { panic!("two contenders") };

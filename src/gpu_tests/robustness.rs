@@ -85,6 +85,18 @@ fn a_frame_beyond_the_device_is_refused() {
 }
 
 #[test]
+fn a_time_step_is_a_time() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    for step in [-1.0, f32::NAN, f32::INFINITY] {
+        let asked = FrameRequest { time_step: step, ..request([8, 8], camera.clone(), &[]) };
+        let error = session.renderer(&small()).render(&scene, &asked).expect_err("no time").to_string();
+        assert!(error.contains("time step"), "{error}");
+    }
+}
+
+#[test]
 fn scenes_without_triangles_are_black_or_sky() {
     let session = Session::open();
     let mut scene = Scene::empty("nothing");

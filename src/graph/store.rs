@@ -106,6 +106,11 @@ impl Store {
         }
     }
 
+    /// How often what outlasts frames was made anew, all together.
+    pub(crate) fn past(&self) -> u64 {
+        self.kept.values().map(|kept| u64::from(kept.age)).sum()
+    }
+
     /// Lets everything that outlasts frames start anew.
     pub(crate) fn reset_history(&mut self) {
         for name in std::mem::take(&mut self.kept).into_keys() {

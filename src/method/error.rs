@@ -12,6 +12,9 @@ pub enum Error {
     /// The frame has no pixels.
     #[error("a frame of {0}x{1} pixels cannot be made; ask for at least 1x1")]
     EmptyFrame(u32, u32),
+    /// The time between two frames is no time.
+    #[error("a frame {0} s after the one before cannot be made; give a time step of zero or more seconds")]
+    TimeStep(f32),
     /// An option is out of its range.
     #[error("{0}")]
     Settings(String),

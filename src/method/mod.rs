@@ -42,6 +42,11 @@ pub(crate) trait Method {
         None
     }
 
+    /// How many frames it takes until what it keeps over frames says what it will go on to say; zero if it keeps nothing.
+    fn lead_in(_: &Self::Options) -> u32 {
+        0
+    }
+
     /// Declares its passes in the order in which they run. Returns the slot's radiance in W/(m² sr), one texel a pixel; none where it is black.
     ///
     /// # Errors

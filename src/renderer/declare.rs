@@ -8,7 +8,7 @@ use crate::frame::camera::camera;
 use crate::frame::compose::{MEANS_AT_ONCE, compose, estimated};
 use crate::frame::gbuffer::{GBuffer, View, gbuffer};
 use crate::frame::geometry::Geometry;
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, FrameTime};
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::light_views;
 use crate::frame::rays::TracedScene;
@@ -89,6 +89,7 @@ pub(crate) struct Shared {
     facts: Facts,
     geometry: Geometry,
     view: View,
+    time: FrameTime,
     pub(crate) surface: GBuffer,
 }
 
@@ -106,7 +107,8 @@ impl Shared {
             emission: request.wants(Slot::Emission) && (shows_emission || sky_asked),
         };
         let surface = gbuffer(graph, data, &geometry, &facts, &view);
-        Shared { facts, geometry, view, surface }
+        let time = FrameTime { index: request.index, step: request.time_step };
+        Shared { facts, geometry, view, time, surface }
     }
 
     /// Declares the light views that the methods take.
@@ -125,6 +127,7 @@ impl Shared {
             geometry: &self.geometry,
             camera: &self.view.camera,
             sky: self.view.sky,
+            time: self.time,
             surface: &self.surface,
             set,
             lights,

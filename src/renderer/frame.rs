@@ -18,6 +18,10 @@ pub struct FrameRequest {
     pub size: [u32; 2],
     /// Where the picture is taken from.
     pub camera: CameraView,
+    /// The frame's number in its sequence: what varies from frame to frame, such as the directions of samples, varies by it.
+    pub index: u32,
+    /// Time since the frame before, seconds; zero if time stands still. What adapts at a rate adapts by it.
+    pub time_step: f32,
     /// The slots wanted as images of their own.
     pub slots: Vec<Slot>,
     /// Whether the image, the sum of all slots, is wanted.
@@ -37,6 +41,8 @@ impl FrameRequest {
         FrameRequest {
             size,
             camera,
+            index: 0,
+            time_step: 0.0,
             slots: Vec::new(),
             image: true,
             tonemap: None,

@@ -25,6 +25,7 @@ pub(crate) struct MethodEntry {
     pub(crate) inputs: fn(&Settings) -> Inputs,
     pub(crate) skip: fn(&Settings, &Facts) -> Option<&'static str>,
     pub(crate) reduced: fn(&Settings) -> Option<String>,
+    pub(crate) lead_in: fn(&Settings) -> u32,
     pub(crate) declare: Declare,
 }
 
@@ -55,6 +56,7 @@ macro_rules! entries {
             inputs: |settings| <crate::$slot::$module::$method as Method>::inputs(&settings.$module),
             skip: |settings, facts| <crate::$slot::$module::$method as Method>::skip(&settings.$module, facts),
             reduced: |settings| <crate::$slot::$module::$method as Method>::reduced(&settings.$module),
+            lead_in: |settings| <crate::$slot::$module::$method as Method>::lead_in(&settings.$module),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
         }),*]
     };
@@ -117,6 +119,15 @@ impl Settings {
             _ => None,
         });
         methods.collect()
+    }
+
+    /// Frames that come before the first one that is worth a look, for methods that keep something over frames: zero if none does.
+    pub fn lead_in(&self) -> u32 {
+        let methods = Slot::ALL.into_iter().filter_map(|slot| match self.methods.filler(slot) {
+            Some(Filler::Method(method)) => Some((method.lead_in)(self)),
+            _ => None,
+        });
+        methods.max().unwrap_or(0)
     }
 
     /// Scatterings between the light and the first visible surface that the methods account for, at most; `None`: no limit. What

@@ -82,10 +82,10 @@ impl Renderer {
     /// with a larger one.
     ///
     /// # Errors
-    /// A frame without pixels or beyond the device's limits, exhausted memory, a lost device. The last two name the last
+    /// A frame without pixels or beyond the device's limits, a time step that is none, exhausted memory, a lost device. The last two name the last
     /// pass that finished.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
-        self.check_size(request)?;
+        self.check_request(request)?;
         let start = Instant::now();
         let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
         let means = self.estimate(scene, request, &mut timings)?;
@@ -200,7 +200,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::render`], as far as uploading the scene goes.
     pub fn describe(&mut self, scene: &Scene, request: &FrameRequest) -> Result<GraphDescription, Error> {
-        self.check_size(request)?;
+        self.check_request(request)?;
         let mut estimated = GraphDescription::default();
         let mut means = None;
         if let Some(entry) = self.estimator(request) {
@@ -218,10 +218,13 @@ impl Renderer {
         Ok(estimated)
     }
 
-    fn check_size(&self, request: &FrameRequest) -> Result<(), Error> {
+    fn check_request(&self, request: &FrameRequest) -> Result<(), Error> {
         let [width, height] = request.size;
         if width == 0 || height == 0 {
             return Err(Error::EmptyFrame(width, height));
+        }
+        if !(request.time_step.is_finite() && request.time_step >= 0.0) {
+            return Err(Error::TimeStep(request.time_step));
         }
         let limit = self.store.device().limits().max_image_dimension2_d;
         if width.max(height) > limit {

@@ -50,7 +50,8 @@ impl Renderer {
     /// Makes a frame, then runs one piece of it again, `rounds` times after one that does not count: `caustics/photons`, a level such as
     /// `caustics/photons/lists`, or one pass. What the piece reads is not made again, unless passes beyond the piece have changed it in place; those
     /// are then repeated with it. Everything is forgotten afterwards, for what was made again need not have the order that the rest of the frame was
-    /// made of: the next frame is made anew.
+    /// made of: the next frame is made anew. Where the piece changes what is kept over frames, that starts anew too, for it has gone on in frames
+    /// that were none.
     ///
     /// # Errors
     /// A piece that the frame does not have, or that it skips; and as [`Renderer::render`].
@@ -65,8 +66,12 @@ impl Renderer {
         self.invalidate();
         let first = self.render(scene, &request)?;
         check_piece(&first.timings.passes, piece)?;
+        let past = self.store.past();
         let repeated = self.repeat_rounds(scene, &request, piece, rounds);
         self.invalidate();
+        if self.store.past() != past {
+            self.reset_history();
+        }
         repeated
     }
 

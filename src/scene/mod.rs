@@ -67,7 +67,7 @@ pub use ids::{CameraId, LightId, MaterialId, MeshId, NodeId, TextureId};
 pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
-pub use world::{Node, Revisions, Scene};
+pub use world::{FRAME_RATE, Node, Revisions, Scene};
 
 pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;

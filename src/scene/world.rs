@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// Frames per second of [`Scene::set_frame`].
-const FRAME_RATE: f64 = 30.0;
+pub const FRAME_RATE: f64 = 30.0;
 
 /// A place in the hierarchy, and what stands there.
 #[derive(Clone, Debug, Default, PartialEq)]

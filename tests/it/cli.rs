@@ -262,6 +262,14 @@ fn a_sequence_is_a_file_a_frame() {
     assert!(quiet.stderr.is_empty(), "{}", stderr(&quiet));
     succeed(&["render", any_scene(), "-o", text(&folder.join("b##.exr")), "--size", "16x16", "--frame", "7"]);
     assert_eq!(names_in(&folder), ["a.0003.png", "a.0004.png", "a.0005.png", "b07.exr"]);
+    let lead_in = |name: &str| read_exr(&folder.join(name)).expect("an EXR").attributes.get("lead_in").cloned();
+    assert_eq!(lead_in("b07.exr"), None, "no method keeps anything");
+    for (name, asked, expected) in [("c.exr", "2", "2"), ("d.exr", "9", "7")] {
+        let path = folder.join(name);
+        let of = ["--size", "16x16", "--frame", "7", "--lead-in", asked];
+        succeed(&[&["render", any_scene(), "-q", "-o", text(&path)][..], &of].concat());
+        assert_eq!(lead_in(name).as_deref(), Some(expected), "no frame comes before frame 0");
+    }
 }
 
 #[test]
