@@ -14,7 +14,7 @@ use irradia::renderer::{Context, Preset, Settings, Technique};
 
 use super::attributes::Picture;
 use super::files;
-use super::invocation::Invocation;
+use super::invocation::{Invocation, TimedArgs};
 use super::method_args::OptionArgs;
 use super::reference;
 use super::scene_args::SceneArgs;
@@ -64,6 +64,8 @@ pub(crate) struct BenchArgs {
     /// Write a PNG of every run into this folder
     #[arg(long, value_name = "DIR")]
     images: Option<PathBuf>,
+    #[command(flatten)]
+    timed: TimedArgs,
     #[command(flatten)]
     options: OptionArgs,
     #[command(flatten)]
@@ -133,7 +135,7 @@ impl Bench<'_> {
         let lead_in = args.lead_in;
         let options = Options { size, frames, warmup, lead_in, max_seconds: None, pictures, slots, pieces };
         let cache = args.reference.map_or(Ok(None), |_| reference::open_cache(args.no_cache))?;
-        let context = invocation.context()?;
+        let context = invocation.context(args.timed.crash_markers())?;
         if let Some(folder) = &args.images {
             fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
         }

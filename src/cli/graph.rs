@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use irradia::output::AtomicFile;
-use irradia::renderer::{FrameRequest, Renderer};
+use irradia::renderer::{CrashMarkers, FrameRequest, Renderer};
 
 use super::invocation::Invocation;
 use super::method_args::MethodArgs;
@@ -30,7 +30,7 @@ pub(crate) struct GraphArgs {
 pub(crate) fn run(args: &GraphArgs, invocation: &Invocation<'_>) -> Result<()> {
     let settings = args.methods.settings()?;
     let scene = args.scene_args.open(&args.scene)?.scene;
-    let context = invocation.context()?;
+    let context = invocation.context(CrashMarkers::On)?;
     let request = FrameRequest::new(args.scene_args.size, args.scene_args.view(&scene)?);
     let request = request.with(|request| request.read_back = false);
     let description = Renderer::new(&context, settings)?.describe(&scene, &request)?;

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use clap::{ArgAction, Args, ValueEnum};
-use irradia::renderer::{Context, ContextOptions, Validation};
+use irradia::renderer::{Context, ContextOptions, CrashMarkers, Validation};
 
 use super::terminal::Terminal;
 
@@ -45,15 +45,16 @@ pub(super) struct Invocation<'a> {
 }
 
 impl Invocation<'_> {
-    /// The device that the arguments choose.
-    pub(super) fn context(&self) -> Result<Context> {
+    /// The device that the arguments choose, for frames whose passes leave marks on it or do not.
+    pub(super) fn context(&self, crash_markers: CrashMarkers) -> Result<Context> {
         let validation = match self.global.validation {
             ValidationChoice::Off => Validation::Off,
             ValidationChoice::Core => Validation::Core,
             ValidationChoice::Sync => Validation::Synchronization,
             ValidationChoice::Gpu => Validation::GpuAssisted,
         };
-        Ok(Context::new(&ContextOptions { device: self.global.device.clone(), validation })?)
+        let device = self.global.device.clone();
+        Ok(Context::new(&ContextOptions { device, validation, crash_markers })?)
     }
 
     /// Fails if the validation layers had anything to say.
@@ -64,6 +65,20 @@ impl Invocation<'_> {
             tracing::warn!("validation: {message}");
         }
         bail!("the validation layers have {} message(s), the first: {first}", messages.len());
+    }
+}
+
+/// What subcommands take whose frames are timed.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct TimedArgs {
+    /// Let each pass leave a mark on the device when it has finished, so that a lost device names the last one; costs time on a GPU
+    #[arg(long)]
+    crash_markers: bool,
+}
+
+impl TimedArgs {
+    pub(super) fn crash_markers(self) -> CrashMarkers {
+        if self.crash_markers { CrashMarkers::On } else { CrashMarkers::Off }
     }
 }
 

@@ -11,6 +11,7 @@ use irradia::reference::{
     Cache, CausticPaths, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name,
     merge,
 };
+use irradia::renderer::CrashMarkers;
 
 use super::invocation::{Invocation, WrongUsage};
 use super::scene_args::SceneArgs;
@@ -114,7 +115,7 @@ fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>)
         filter: args.filter,
         seed: args.seed,
     };
-    let context = invocation.context()?;
+    let context = invocation.context(CrashMarkers::On)?;
     let job = Job { context: &context, scene: &scene, scene_name: &scene.name, request: &request };
     let mut steps = Steps::new(invocation.terminal, &scene.name);
     let mut progress = |progress| steps.show(progress);

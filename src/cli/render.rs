@@ -8,7 +8,7 @@ use clap::Args;
 use irradia::image::tone_map;
 use irradia::output::{self, ImageFormat};
 use irradia::reference::IMAGE;
-use irradia::renderer::{Frame, FrameRequest, Renderer, Slot, ToneMap};
+use irradia::renderer::{CrashMarkers, Frame, FrameRequest, Renderer, Slot, ToneMap};
 use irradia::scene::{CameraView, FRAME_RATE};
 
 use super::attributes::Picture;
@@ -73,7 +73,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     let settings = args.methods.settings_of_pictures()?;
     let loaded = args.scene_args.open(&args.scene)?;
     let mut scene = loaded.scene;
-    let context = invocation.context()?;
+    let context = invocation.context(CrashMarkers::On)?;
     let mut renderer = Renderer::new(&context, settings)?;
     let device = context.device();
 

@@ -15,7 +15,7 @@ use irradia::renderer::{Context, Settings};
 use irradia::scene::{CameraView, Scene};
 
 use super::bench::write_text;
-use super::invocation::Invocation;
+use super::invocation::{Invocation, TimedArgs};
 use super::reference::open_cache;
 use super::scene_args::warn_of;
 use super::terminal::{Progress, Steps, Terminal};
@@ -54,6 +54,8 @@ pub(crate) struct SweepArgs {
     /// Write a plot of every scene into this folder, as SVG
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
+    #[command(flatten)]
+    timed: TimedArgs,
 }
 
 /// Measures or merges, prints the tables, writes the files. What fails is told at the end.
@@ -117,7 +119,7 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
     let earlier = args.json.as_ref().filter(|path| !args.restart && path.is_file());
     let earlier = earlier.map(|path| Sweep::read(path).map(|sweep| (path, sweep))).transpose()?;
     let cache = grid.reference.map_or(Ok(None), |_| open_cache(false))?;
-    let context = invocation.context()?;
+    let context = invocation.context(args.timed.crash_markers())?;
     let mut result = Sweep::new(grid.clone(), Device::from(&context.device()));
     if let Some((path, earlier)) = earlier {
         result = result.resume(path, earlier)?;

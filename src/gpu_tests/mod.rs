@@ -8,6 +8,7 @@ mod bench_slots;
 mod bvh;
 mod bvh_closed;
 mod bvh_speed;
+mod crash_markers;
 mod direct;
 mod emitter_coverage;
 mod estimates;

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 /// Names what the layer checks: `off`, `core`, `sync` (the default) or `gpu`.
 const VALIDATION: &str = "IRRADIA_TEST_VALIDATION";
 /// Names the device, as `--device` does.
-const DEVICE: &str = "IRRADIA_TEST_DEVICE";
+pub(super) const DEVICE: &str = "IRRADIA_TEST_DEVICE";
 
 /// A device. When it goes, after everything made on it, the test fails if the validation layer said anything or if
 /// memory is still held.
@@ -26,7 +26,7 @@ impl Session {
             Ok("off") => Validation::Off,
             Ok(other) => panic!("{VALIDATION} is {other:?}; it takes off, core, sync or gpu"),
         };
-        let options = ContextOptions { device: std::env::var(DEVICE).ok(), validation };
+        let options = ContextOptions { device: std::env::var(DEVICE).ok(), validation, ..ContextOptions::default() };
         let context = Context::new(&options).expect("a device for tests");
         static SAID: Once = Once::new();
         SAID.call_once(|| {

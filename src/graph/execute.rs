@@ -187,6 +187,9 @@ impl Graph<'_> {
         stamp(self, 1);
         self.record_read_backs(read_back);
         if let Err(error) = self.store.recorder.finish() {
+            if !self.store.device.marks_passes() {
+                return Err(error.after_unmarked_passes());
+            }
             return Err(error.after_pass(self.last_finished(part, first_slot).as_deref()));
         }
         for &index in part {
@@ -255,11 +258,10 @@ impl Graph<'_> {
         Ok(())
     }
 
-    /// The name of the last pass of a submission whose marker was written.
+    /// The name of the last pass of a submission that finished.
     fn last_finished(&self, part: &[usize], first_slot: usize) -> Option<String> {
-        let words: &[u32] = bytemuck::try_cast_slice(self.store.markers.mapped()?).ok()?;
-        let last = words.iter().skip(first_slot).take(part.len()).rposition(|word| *word != 0)?;
-        Some(self.passes[part[last]].full_name())
+        let last = self.store.recorder.last_marked(&self.store.markers, first_slot, part.len())?;
+        Some(self.passes[part[last - first_slot]].full_name())
     }
 
     /// Remembers what the outputs of a pass that ran now hold.

@@ -56,21 +56,14 @@ impl Graph<'_> {
         self.keep_wholes(index)
     }
 
-    /// Notes on the device that the pass has finished. The next pass does not wait for this.
+    /// Notes on the device that the pass has finished.
     fn record_marker(&self, pass: &Pass, slot: u32) {
         let stages = match (&pass.work, pass.program) {
             (Work::Draw(_), _) => vk::PipelineStageFlags2::ALL_GRAPHICS,
             (_, Some(program)) => pipeline_stages(program),
             _ => vk::PipelineStageFlags2::ALL_TRANSFER,
         };
-        let scope = Scope {
-            from_stages: stages,
-            from_access: vk::AccessFlags2::NONE,
-            to_stages: vk::PipelineStageFlags2::ALL_TRANSFER,
-            to_access: vk::AccessFlags2::NONE,
-        };
-        self.store.recorder.barriers(&Barriers { memory: Some(scope), images: Vec::new() });
-        self.store.recorder.fill(&self.store.markers, u64::from(slot) * 4, 4, 1);
+        self.store.recorder.mark(&self.store.markers, slot, stages);
     }
 
     pub(super) fn holds_depth(&self, id: usize) -> bool {

@@ -83,6 +83,13 @@ impl Store {
         })
     }
 
+    /// Passes of the last frame that left a mark.
+    #[cfg(test)]
+    pub(crate) fn marked_passes(&self) -> usize {
+        let bytes = self.markers.mapped().expect("it is read by the host");
+        bytes.chunks_exact(4).filter(|word| **word != [0; 4]).count()
+    }
+
     /// Bytes of the largest buffer that a kernel may see whole.
     pub(super) fn largest_buffer(&self) -> usize {
         self.device.limits().max_storage_buffer_range as usize

@@ -42,4 +42,4 @@ pub use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing};
 pub use crate::image::{ColorImage, ToneMap};
 pub use crate::method::{Error, OptionFault, OptionInfo, OptionKind, Options, Preset, UnknownPreset};
 pub use crate::slot::Slot;
-pub use crate::vulkan::{ContextOptions, DeviceReport, Validation, VulkanError};
+pub use crate::vulkan::{ContextOptions, CrashMarkers, DeviceReport, Validation, VulkanError};

@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "creation and destruction of the device")]
 
 use std::collections::BTreeMap;
+use std::ffi::CStr;
 use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,6 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
+use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
 use super::report::{self, DeviceReport, Survey};
@@ -21,6 +23,8 @@ pub struct ContextOptions {
     pub device: Option<String>,
     /// What the validation layer checks.
     pub validation: Validation,
+    /// Whether passes leave marks on the device.
+    pub crash_markers: CrashMarkers,
 }
 
 /// A logical device with one queue for everything. Shared by `Arc` with all that is made on it, and so destroyed last.
@@ -30,6 +34,7 @@ pub(crate) struct Device {
     pub(crate) queue: Mutex<vk::Queue>,
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
+    pub(super) marking: Marking,
     allocator: ManuallyDrop<Mutex<Allocator>>,
     live: Mutex<BTreeMap<u64, (String, u64)>>,
     next_id: AtomicU64,
@@ -69,8 +74,13 @@ impl Device {
             .maintenance4(true);
         let mut vulkan12 =
             vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
+        let available = extensions_of(&instance, physical)?;
+        let available: Vec<&CStr> = available.iter().filter_map(|name| name.extension_name_as_c_str().ok()).collect();
+        let marker = extension(options.crash_markers, &available);
+        let enabled: Vec<_> = marker.iter().map(|name| name.as_ptr()).collect();
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
+            .enabled_extension_names(&enabled)
             .enabled_features(&core)
             .push_next(&mut vulkan13)
             .push_next(&mut vulkan12);
@@ -78,6 +88,7 @@ impl Device {
         let raw = unsafe { instance.raw.create_device(physical, &info, None) }.called("vkCreateDevice")?;
         // SAFETY: the family and its queue 0 were asked for above.
         let queue = unsafe { raw.get_device_queue(survey.queue_family, 0) };
+        let marking = Marking::new(options.crash_markers, marker, &instance.raw, &raw);
         let labels = instance.debug.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
         let description = AllocatorCreateDesc {
             instance: instance.raw.clone(),
@@ -110,6 +121,7 @@ impl Device {
             queue: Mutex::new(queue),
             survey,
             labels,
+            marking,
             allocator,
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
@@ -196,6 +208,15 @@ impl Drop for Device {
             self.raw.destroy_device(None);
         }
     }
+}
+
+fn extensions_of(
+    instance: &Instance,
+    physical: vk::PhysicalDevice,
+) -> Result<Vec<vk::ExtensionProperties>, VulkanError> {
+    // SAFETY: the physical device belongs to the instance.
+    let found = unsafe { instance.raw.enumerate_device_extension_properties(physical) };
+    found.called("vkEnumerateDeviceExtensionProperties")
 }
 
 fn choose(instance: &Instance, asked: Option<&str>) -> Result<(vk::PhysicalDevice, Survey), VulkanError> {

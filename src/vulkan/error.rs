@@ -106,8 +106,14 @@ impl<T> Called<T> for Result<T, vk::Result> {
 }
 
 const NO_PASS: &str = "none of this frame";
+const UNMARKED: &str = "not known, for passes left no marks (--crash-markers has them do so, in the library ContextOptions::crash_markers)";
 
 impl VulkanError {
+    /// The same error where no pass left a mark.
+    pub(crate) fn after_unmarked_passes(self) -> VulkanError {
+        self.after_pass(Some(UNMARKED))
+    }
+
     /// The same error, naming the last pass that finished where that matters.
     pub(crate) fn after_pass(self, pass: Option<&str>) -> VulkanError {
         let Some(pass) = pass else { return self };
@@ -130,6 +136,9 @@ mod tests {
         let lost: Result<(), _> = Err(vk::Result::ERROR_DEVICE_LOST);
         let error = lost.called("vkQueueSubmit2").expect_err("it is an error").after_pass(Some("rsm/gather"));
         assert!(error.to_string().contains("last pass that finished is rsm/gather"), "{error}");
+        let lost: Result<(), _> = Err(vk::Result::ERROR_DEVICE_LOST);
+        let error = lost.called("vkQueueSubmit2").expect_err("it is an error").after_unmarked_passes();
+        assert!(error.to_string().contains("--crash-markers"), "{error}");
         let memory: Result<(), _> = Err(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
         let error = memory.called("light_views.flux").expect_err("it is an error").after_pass(Some("gbuffer/plain"));
         assert!(

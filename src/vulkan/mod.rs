@@ -5,6 +5,7 @@
 //! ([`Recorder::finish`] waits), which is the invariant that most `SAFETY` comments below lean on.
 
 mod copy;
+mod crash_markers;
 mod descriptors;
 mod device;
 mod draw;
@@ -20,6 +21,7 @@ mod recorder;
 mod report;
 mod transfer;
 
+pub use crash_markers::CrashMarkers;
 pub(crate) use descriptors::{Descriptor, MaterialSets};
 pub use device::ContextOptions;
 pub(crate) use device::Device;
