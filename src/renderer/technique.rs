@@ -59,6 +59,9 @@ techniques! {
     Hybrid, "hybrid" { diffuse: DiffuseMethod::Vpl, caustics: CausticsMethod::Photons } {
         high: "lights.resolution" = 512, "shadow.filter_radius" = 1;
     }
+    /// Light between area particles along links that were traced once (Chang, Park & Ihm), direct light by rays: geometry takes seconds, lights and
+    /// camera move freely.
+    Particles, "particles" { direct: DirectMethod::Traced, diffuse: DiffuseMethod::Particles }
     /// Path tracing and light tracing: the reference, at as many samples as time allows.
     Path, "path" {
         direct: DirectMethod::Traced, diffuse: DiffuseMethod::Path, caustics: CausticsMethod::Path, specular: SpecularMethod::Path

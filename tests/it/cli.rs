@@ -301,7 +301,8 @@ fn a_failing_scene_does_not_stop_the_bench() {
     let (json, csv, md, images) =
         (folder.join("a.json"), folder.join("a.csv"), folder.join("a.md"), folder.join("images"));
     let scenes = [any_scene(), "no-such-scene"];
-    let measured = ["--technique", "all", "--frames", "2", "--warmup", "1", "--size", "48x32"];
+    let measured =
+        ["--technique", "all", "--frames", "2", "--warmup", "1", "--size", "48x32", "--set", "particles.count=1000"];
     let files = ["--json", text(&json), "--csv", text(&csv), "--md", text(&md), "--images", text(&images)];
     let output = irradia(&[&["bench"], &scenes[..], &measured, &files].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
@@ -314,7 +315,7 @@ fn a_failing_scene_does_not_stop_the_bench() {
     assert!(!report.device.name.is_empty());
     assert_eq!(report.failures.len(), 1);
     let techniques: Vec<&str> = report.runs.iter().map(|run| run.technique.as_str()).collect();
-    assert_eq!(techniques, ["direct", "rsm", "hybrid", "path", "sppm"]);
+    assert_eq!(techniques, ["direct", "rsm", "hybrid", "particles", "path", "sppm"]);
     for run in &report.runs {
         assert_eq!((run.frames, run.size), (2, [48, 32]));
         assert!(

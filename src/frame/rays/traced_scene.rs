@@ -27,6 +27,8 @@ pub(crate) struct TracedScene {
     pub(crate) key: u64,
     /// Of what rays meet, whatever shines on it.
     pub(crate) surfaces_key: u64,
+    /// Of the triangles' records, which hold what points of lights are drawn with.
+    triangles_key: u64,
     pub(crate) origin: DVec3,
     /// Of the box around what matters, in render space.
     pub(crate) middle_rs: DVec3,
@@ -51,6 +53,9 @@ pub(crate) struct TracedScene {
     /// Rays that start as far from surfaces as rounding of the largest coordinate asks would leave out an eighth of the finer triangles: rounding is bounded
     /// triangle by triangle (glsl/lib/bvh.glsl).
     wide: bool,
+    pub(crate) triangle_count: u32,
+    /// The largest share of light that some material's diffuse lobe reflects, textures aside.
+    pub(crate) greatest_albedo: f64,
     /// Of the triangles that matter, m².
     pub(crate) area: f64,
     pub(crate) punctual_count: u32,
@@ -142,6 +147,7 @@ impl TracedScene {
         Ok(TracedScene {
             key: traced_key(scene),
             surfaces_key: surfaces_key(scene),
+            triangles_key: hash_of(&(surfaces_key(scene), &records)),
             origin,
             middle_rs,
             radius,
@@ -167,6 +173,8 @@ impl TracedScene {
                 .filter(|triangle| triangle.nearest(middle_rs) <= radius)
                 .map(TracedTriangle::area)
                 .sum(),
+            triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
+            greatest_albedo: scene.materials().iter().map(diffuse_albedo).fold(0.0, f64::max),
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
@@ -212,7 +220,7 @@ impl TracedScene {
             texels: bind("traced.texels", materials),
             sobol: bind("traced.sobol", Dependence::NONE),
             // They hold the densities that lights are drawn with.
-            triangles: self.bind(graph, "traced.triangles", self.key, geometry),
+            triangles: self.bind(graph, "traced.triangles", self.triangles_key, geometry),
             alpha_masks: u32::from(self.cutouts),
             vertex_colors: u32::from(self.facts.vertex_colors),
             normal_maps: u32::from(self.facts.normal_mapped),
@@ -241,6 +249,13 @@ impl TracedScene {
             emissive_cutouts: u32::from(self.emissive_cutouts),
         }
     }
+}
+
+/// What a material's diffuse lobe reflects of light, in the brightest channel, without its textures.
+fn diffuse_albedo(material: &Material) -> f64 {
+    let [red, green, blue, _] = material.base_color;
+    let lobe = (1.0 - material.metallic) * (1.0 - material.transmission) * if material.unlit { 0.0 } else { 1.0 };
+    f64::from(red.max(green).max(blue) * lobe).clamp(0.0, 1.0)
 }
 
 /// The size that all but a sixteenth of the triangles have, metres.

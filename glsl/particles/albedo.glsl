@@ -1,0 +1,37 @@
+// What the diffuse lobe of a surface reflects at a point, for light from anywhere.
+#ifndef PARTICLES_ALBEDO
+#define PARTICLES_ALBEDO
+
+#include "groups/scene_rays.glsl"
+#include "lib/brdf.glsl"
+#include "lib/texels.glsl"
+#include "lib/traced_scene.glsl"
+
+vec4 texel_of(uint material, uint use_number, vec4 sets) {
+    TextureUse use = load_texture_use(material_textures, material, use_number);
+    vec3 uv = vec3(use.texcoord == 0u ? sets.xy : sets.zw, 1.0);
+    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0));
+}
+
+vec3 diffuse_albedo_at(Triangle triangle, Material material, vec2 place) {
+    vec3 weights = vec3(1.0 - place.x - place.y, place);
+    vec4 color = VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
+    MaterialPoint point = material_factors(material, color);
+    uint kinds = MATERIAL_BASE_COLOR_TEXTURE | MATERIAL_METALLIC_ROUGHNESS_TEXTURE | MATERIAL_TRANSMISSION_TEXTURE;
+    if ((material.flags & TEXTURES & kinds) != 0u) {
+        vec4 sets = interpolated(corner_texcoords, triangle, weights);
+        if ((material.flags & MATERIAL_BASE_COLOR_TEXTURE) != 0u) {
+            point.base_color *= texel_of(triangle.material, USE_BASE_COLOR, sets);
+        }
+        if ((material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u) {
+            point.metallic *= texel_of(triangle.material, USE_METALLIC_ROUGHNESS, sets).b;
+        }
+        if ((material.flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u) {
+            point.transmission *= texel_of(triangle.material, USE_TRANSMISSION, sets).r;
+        }
+    }
+    Lobes lobes = lobes_of_material(material, point);
+    return clamp(indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90), 0.0, 1.0);
+}
+
+#endif

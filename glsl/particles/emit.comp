@@ -1,0 +1,93 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "groups/particles.glsl"
+#include "groups/scene_lights.glsl"
+#include "groups/scene_rays.glsl"
+#include "lib/cutouts.glsl"
+#include "lib/bvh.glsl"
+#include "lib/emissive_points.glsl"
+#include "lib/emitters.glsl"
+#include "lib/lights.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/ray_offset.glsl"
+#include "lib/sobol.glsl"
+
+// The flux that one particle receives from the lights, W (Chang et al. 4.2.1, for every kind of light):
+//
+//   φ = ΔA·( Σ_punctual I(ω)·cosθ/(d² + ΔA/π)·V + 1/K Σ_k L_e(y_k)·cosθ·cosθ_k/((d² + ΔA/π)·p(y_k))·V + π·L_sky·s )
+//
+// d² + ΔA/π in place of d²: the particle is a disc, which takes no more than a half space of light. y_k: points of emissive surfaces drawn by power with
+// density p; s: the share of the particle's links that escape, which are spread by the cosine.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
+layout(set = 0, binding = 1) uniform samplerBuffer matter;
+layout(set = 0, binding = 2) uniform usamplerBuffer escaped;
+layout(set = 0, binding = 3) writeonly buffer Flux { vec4 flux[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint particle_count;
+    uint light_count;
+    uint emitter_count;
+    uint sample_count;
+    float density_scale;
+    float link_share;   // 1 / links of a particle
+    vec3 sky;
+} push;
+
+void main() {
+    uint particle = gl_GlobalInvocationID.x;
+    if (particle >= push.particle_count) {
+        return;
+    }
+    float area = texelFetch(matter, int(particle)).w;
+    if (area <= 0.0) {
+        flux[particle] = vec4(0.0);
+        return;
+    }
+    uvec4 place = texelFetch(particle_places, int(particle));
+    vec3 position = uintBitsToFloat(place.xyz);
+    vec3 normal = unpack_direction(place.w);
+    vec3 face = unpack_direction(texelFetch(particle_faces, int(particle)).x);
+    vec3 origin = offset_ray_origin(position, face);
+    float disc = area * INVERSE_PI;
+
+    vec3 irradiance = push.sky * (PI * float(texelFetch(escaped, int(particle)).x) * push.link_share);
+    [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
+        vec3 light = vec3(0.0);
+        vec3 way = vec3(0.0);
+        float end = 1.0;
+        if (i < push.light_count) {
+            Light source = load_light(punctual_lights, i);
+            Illumination illumination = illuminate(source, position);
+            bool directional = source.kind == LIGHT_DIRECTIONAL;
+            way = directional ? illumination.to_light : source.position_rs - origin;
+            end = directional ? 3e38 : 1.0;
+            vec3 beyond = source.position_rs - position;
+            float distance2 = dot(beyond, beyond);
+            float spread = directional ? 1.0 : distance2 / (distance2 + disc);
+            light = illumination.irradiance * (spread * max(dot(normal, illumination.to_light), 0.0));
+        } else {
+            vec4 random = sobol_sample(sobol, i - push.light_count, seed_of(particle, 0xE31771u));
+            Emitter emitter = pick_emitter(emissive_triangles, push.emitter_count, random.x);
+            Triangle triangle = load_triangle(triangles, emitter.number);
+            Material material = load_material(materials, triangle.material);
+            EmissivePoint point = draw_emissive_point(triangle, random.yz);
+            vec3 front = front_normal(triangle);
+            way = point_of_triangle(triangle, point.place, front) - origin;
+            float distance2 = max(dot(way, way), 1e-30);
+            vec3 to_light = way * inversesqrt(distance2);
+            float cosine = -dot(front, to_light);
+            cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : max(cosine, 0.0);
+            float density = point.density * push.density_scale * float(push.sample_count);
+            light = covered_radiance(triangle, material, point.place)
+                    * (cosine * max(dot(normal, to_light), 0.0) / (max(density, 1e-30) * (distance2 + disc)));
+        }
+        if (max3(light) > 0.0 && dot(face, way) > 0.0 && !is_occluded(origin, way, end)) {
+            irradiance += light;
+        }
+    }
+    vec3 received = irradiance * area;
+    flux[particle] = vec4(is_finite(received) ? received : vec3(0.0), 0.0);
+}

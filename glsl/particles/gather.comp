@@ -1,0 +1,37 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "lib/vectors.glsl"
+#include "particles/link.glsl"
+
+// The irradiance of indirect light at one particle that is used, W/m² (Chang et al. 4.3.1): its links are spread by the cosine, so
+//
+//   E = ∫ L cosθ dω ≈ π/N Σ_k L(end of link k)
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer used;
+layout(set = 0, binding = 1) uniform usamplerBuffer links;
+layout(set = 0, binding = 2) uniform samplerBuffer radiance;
+layout(set = 0, binding = 3) uniform samplerBuffer matter;
+layout(set = 0, binding = 4) buffer Irradiance { vec4 irradiance[]; };  // and the area of each, m²
+
+layout(push_constant, scalar) uniform Push {
+    uint first;       // particle of the chunk
+    uint count;
+    uint link_count;
+} push;
+
+void main() {
+    uint own = gl_GlobalInvocationID.x;
+    if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
+        return;
+    }
+    vec3 sum = vec3(0.0);
+    [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
+        uint end = texelFetch(links, int(own * push.link_count + i)).x;
+        if (ends_on_particle(end)) {
+            sum += texelFetch(radiance, int(end)).rgb;
+        }
+    }
+    irradiance[push.first + own] = vec4(sum * (PI / float(push.link_count)), texelFetch(matter, int(push.first + own)).w);
+}

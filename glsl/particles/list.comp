@@ -1,0 +1,82 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "groups/particles.glsl"
+#include "groups/scene_rays.glsl"
+#include "lib/cutouts.glsl"
+#include "lib/bvh.glsl"
+#include "particles/home.glsl"
+#include "particles/lists.glsl"
+
+// Lists the particles whose irradiance counts at points of one particle's catchment (the estimation lists of Chang et al. 3.2, at area particles): those
+// within reach, of similar normals, near the tangent plane, and seen by it where anything stands near. Always in the same order.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) buffer Lists { uint lists[]; };
+layout(set = 0, binding = 1) writeonly buffer Lengths { uint lengths[]; };
+layout(set = 0, binding = 2) buffer Counts { uint counts[]; };  // entries, entries for which there was no room
+
+layout(push_constant, scalar) uniform Push { uint particle_count; } push;
+
+// Spacings: the kernel's radius and how far a point may be from its particle.
+const float LIST_SPACINGS = KERNEL_SPACINGS + 1.0;
+// Cosine between normals; share of the spacing off the tangent plane.
+const float LIST_SIMILAR = 0.8;
+const float LIST_ACROSS = 0.5;
+
+void main() {
+    uint particle = gl_GlobalInvocationID.x;
+    if (particle >= push.particle_count) {
+        return;
+    }
+    float spacing = spacing_of_particles();
+    uint bucket_count = uint(textureSize(particle_starts)) - 1u;
+    uvec4 place = texelFetch(particle_places, int(particle));
+    vec3 position = uintBitsToFloat(place.xyz);
+    vec3 normal = unpack_direction(place.w);
+    float reach = LIST_SPACINGS * spacing;
+    ivec3 low = cell_of(position - reach, spacing);
+    ivec3 size = cell_of(position + reach, spacing) - low + 1;
+    uint first = particle * LIST_CAPACITY;
+    uint found = 0u;
+    bool crowded = false;
+    [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {
+        ivec3 cell = low + ivec3(number % size.x, number / size.x % size.y, number / (size.x * size.y));
+        int bucket = int(bucket_of(cell, bucket_count));
+        uint end = texelFetch(particle_starts, bucket + 1).x;
+        [[dont_unroll]] for (uint other = texelFetch(particle_starts, bucket).x; other < end; ++other) {
+            uvec4 other_place = texelFetch(particle_places, int(other));
+            vec3 other_position = uintBitsToFloat(other_place.xyz);
+            vec3 way = other_position - position;
+            float above = dot(way, normal);
+            // Of several cells that share a bucket this one alone.
+            if (dot(way, way) > reach * reach || cell_of(other_position, spacing) != cell) {
+                continue;
+            }
+            crowded = crowded || above > ABOVE * spacing;
+            if (abs(above) <= LIST_ACROSS * spacing && dot(unpack_direction(other_place.w), normal) > LIST_SIMILAR) {
+                if (found < LIST_CAPACITY) {
+                    lists[first + found] = other;
+                }
+                ++found;
+            }
+        }
+    }
+    uint listed = min(found, LIST_CAPACITY);
+    uint kept = listed;
+    if (crowded) {
+        kept = 0u;
+        [[dont_unroll]] for (uint entry = 0u; entry < listed; ++entry) {
+            uint other = lists[first + entry];
+            if (other == particle || sees_particle(position, normal, other, spacing)) {
+                lists[first + kept] = other;
+                ++kept;
+            }
+        }
+    }
+    lengths[particle] = kept;
+    atomicAdd(counts[0], kept);
+    if (found > listed) {
+        atomicAdd(counts[1], found - listed);
+    }
+}

@@ -1,0 +1,28 @@
+#version 460
+#include "lib/prelude.glsl"
+
+// Area and mean albedo of one particle, out of what was counted (catch.comp).
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer tallies;
+layout(set = 0, binding = 1) uniform samplerBuffer sums;
+layout(set = 0, binding = 2) writeonly buffer Matter { vec4 matter[]; };  // albedo, area in m²
+
+layout(push_constant, scalar) uniform Push {
+    uint triangle_count;
+    uint point_count;
+    uint particle_count;
+} push;
+
+const float ALBEDO_STEPS = 4095.0;
+
+void main() {
+    uint particle = gl_GlobalInvocationID.x;
+    if (particle >= push.particle_count) {
+        return;
+    }
+    uvec4 tally = texelFetch(tallies, int(particle));
+    float area = float(tally.x) * (texelFetch(sums, int(push.triangle_count)).x / float(push.point_count));
+    matter[particle] = vec4(vec3(tally.yzw) / (ALBEDO_STEPS * max(float(tally.x), 1.0)), area);
+}

@@ -1,0 +1,33 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
+#include "particles/grid.glsl"
+#include "particles/surface_points.glsl"
+
+// Puts one area particle onto the surfaces and counts it in its bucket of the grid.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform samplerBuffer sums;
+layout(set = 0, binding = 1) uniform samplerBuffer spacing;
+layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };  // position, packed shading normal
+layout(set = 0, binding = 3) writeonly buffer Faces { uvec2 faces[]; };    // packed normal of the triangle, bucket
+layout(set = 0, binding = 4) buffer Counts { uint counts[]; };
+
+layout(push_constant, scalar) uniform Push {
+    uint triangle_count;
+    uint particle_count;
+    uint bucket_count;
+} push;
+
+void main() {
+    uint particle = gl_GlobalInvocationID.x;
+    if (particle >= push.particle_count) {
+        return;
+    }
+    SurfacePoint point = surface_point(sums, push.triangle_count, particle, push.particle_count, 1u);
+    uint bucket = bucket_of(cell_of(point.position, texelFetch(spacing, 0).x), push.bucket_count);
+    places[particle] = uvec4(floatBitsToUint(point.position), pack_direction(point.normal));
+    faces[particle] = uvec2(pack_direction(point.face), bucket);
+    atomicAdd(counts[bucket], 1u);
+}

@@ -1,0 +1,69 @@
+// Points spread evenly over all diffuse surface: number i of n lies where the areas of the triangles, one after the other, add up to (i + ½)/n of
+// all, and within a triangle on the points of the R₂ sequence (Roberts 2018), which fill it evenly for any number of them.
+#ifndef PARTICLES_SURFACE_POINTS
+#define PARTICLES_SURFACE_POINTS
+
+#include "groups/scene_rays.glsl"
+#include "lib/octahedral.glsl"
+#include "lib/sobol.glsl"
+#include "lib/traced_scene.glsl"
+
+struct SurfacePoint {
+    Triangle triangle;
+    uint index;
+    vec2 place;     // weights of corners 1 and 2
+    vec3 position;
+    vec3 face;      // unit, on the point's side
+    vec3 normal;    // of shading, likewise
+};
+
+// Area-preserving from the square, neighbours stay neighbours (Heitz 2019).
+vec2 place_by_halves(vec2 square) {
+    return square.y > square.x ? vec2(0.5 * square.x, square.y - 0.5 * square.x) : vec2(square.x - 0.5 * square.y, 0.5 * square.y);
+}
+
+// `sums`: the areas before each of `triangle_count` triangles, the total behind.
+SurfacePoint surface_point(samplerBuffer sums, uint triangle_count, uint number, uint count, uint seed) {
+    float total = texelFetch(sums, int(triangle_count)).x;
+    float step_area = total / float(count);
+    float area = (float(number) + 0.5) * step_area;
+    uint low = 0u;
+    uint high = triangle_count;
+    [[dont_unroll]] for (uint halving = 0u; halving < 32u && high - low > 1u; ++halving) {
+        uint middle = (low + high) / 2u;
+        if (texelFetch(sums, int(middle)).x <= area) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    float first = texelFetch(sums, int(low)).x;
+    float own = max(texelFetch(sums, int(low + 1u)).x - first, 1e-30);
+    float along = clamp((area - first) / own, 0.0, 1.0);
+
+    SurfacePoint point;
+    point.index = low;
+    point.triangle = load_triangle(triangles, low);
+    bool both_sides = (load_material(materials, point.triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    bool back = both_sides && along >= 0.5;
+    float side_area = both_sides ? 0.5 * own : own;
+    float k = floor((area - first - (back ? side_area : 0.0)) / step_area);
+    uint shift = seed_of(low * 2u + (back ? 1u : 0u), seed);
+    vec2 start = vec2(shift & 0xFFFFu, shift >> 16) / 65536.0;
+    point.place = place_by_halves(fract(start + k * vec2(0.7548776662466927, 0.5698402909980532)));
+
+    vec3 front = front_normal(point.triangle);
+    point.position = point_of_triangle(point.triangle, point.place, front);
+    point.face = back ? -front : front;
+    point.normal = point.face;
+    if (!point.triangle.flat_normals) {
+        vec3 weights = vec3(1.0 - point.place.x - point.place.y, point.place);
+        vec3 smooth_normal = normalize_or(
+            weights.x * unpack_direction(point.triangle.normals.x) + weights.y * unpack_direction(point.triangle.normals.y)
+                + weights.z * unpack_direction(point.triangle.normals.z), front);
+        point.normal = dot(smooth_normal, point.face) < 0.0 ? -smooth_normal : smooth_normal;
+    }
+    return point;
+}
+
+#endif

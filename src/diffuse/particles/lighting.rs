@@ -1,0 +1,99 @@
+//! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
+
+use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use super::options::ParticlesOptions;
+use crate::frame::rays::TracedScene;
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::particles::{
+    Emit, EmitPush, FluxScale, FluxScalePush, Radiance, RadiancePush, Scatter, ScatterPush,
+};
+
+/// What the stage leaves.
+pub(super) struct Lighting {
+    /// What lights gave each particle, W.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests add it up"))]
+    pub(super) emitted: BufferRef<[f32; 4]>,
+    /// Steps of fixed-point numbers a watt.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it"))]
+    pub(super) scale: BufferRef<[f32; 4]>,
+    /// What each received in every scattering step.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests add it up"))]
+    pub(super) received: Vec<BufferRef<u32>>,
+    /// What each sends out, W/(m² sr).
+    pub(super) radiance: BufferRef<[f32; 4]>,
+}
+
+/// Declares the stage, with so many scattering steps.
+pub(super) fn light(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    space: &ParticleSpace,
+    options: &ParticlesOptions,
+    steps: u32,
+) -> Lighting {
+    let particle_count = space.count;
+    let threads = [particle_count, 1, 1];
+    let emitted = graph.buffer::<[f32; 4]>("particles.emitted", particle_count as usize);
+    let sample_count = if scene.emissive_count > 0 { options.emitter_samples } else { 0 };
+    let pass = Emit {
+        scene_rays: space.rays.clone(),
+        scene_lights: scene.lights(graph),
+        particles: space.group.clone(),
+        particle_faces: space.faces.texels(WORD),
+        matter: space.matter.texels(FLOATS4),
+        escaped: space.escaped.texels(WORD),
+        flux: emitted.write(),
+        push: EmitPush {
+            particle_count,
+            light_count: scene.punctual_count,
+            emitter_count: scene.emissive_count,
+            sample_count,
+            density_scale: scene.emissive_density_scale,
+            link_share: 1.0 / (options.gather * options.gather) as f32,
+            sky: scene.sky,
+        },
+    };
+    let rays = u64::from(particle_count) * u64::from(scene.punctual_count + sample_count);
+    graph.pass("diffuse/particles/light/emit", pass).note("rays", rays).threads(threads);
+    let scale = graph.buffer::<[f32; 4]>("particles.scale", 1);
+    let push = FluxScalePush { particle_count };
+    let pass = FluxScale { flux: emitted.texels(FLOATS4), scale: scale.write(), push };
+    graph.pass("diffuse/particles/light/scale", pass).groups([1, 1, 1]);
+
+    let link_count = options.scatter * options.scatter;
+    let mut total = emitted;
+    let mut received: Vec<BufferRef<u32>> = Vec::new();
+    for number in 0..steps {
+        let next = graph.buffer::<u32>(&format!("particles.received.{number}"), 3 * particle_count as usize);
+        graph.fill_buffer(&format!("diffuse/particles/light/clear.{number}"), next, 0);
+        if number == 0 {
+            total = graph.buffer::<[f32; 4]>("particles.total", particle_count as usize);
+        }
+        let pass = Scatter {
+            first: u32::from(number == 0),
+            matter: space.matter.texels(FLOATS4),
+            emitted: emitted.texels(FLOATS4),
+            scatter_links: space.scatter_links.texels(WORD),
+            scale: scale.texels(FLOATS4),
+            received: received.last().unwrap_or(&space.escaped).texels(WORD),
+            next: next.read_write(),
+            total: if number == 0 { total.start_then_read() } else { total.read_write() },
+            push: ScatterPush { particle_count, link_count, number },
+        };
+        graph.pass(&format!("diffuse/particles/light/scatter.{number}"), pass).threads(threads);
+        received.push(next);
+    }
+    let radiance = graph.buffer::<[f32; 4]>("particles.radiance", particle_count as usize);
+    let pass = Radiance {
+        scattered: u32::from(!received.is_empty()),
+        matter: space.matter.texels(FLOATS4),
+        total: total.texels(FLOATS4),
+        scale: scale.texels(FLOATS4),
+        received: received.last().unwrap_or(&space.escaped).texels(WORD),
+        radiance: radiance.write(),
+        push: RadiancePush { particle_count },
+    };
+    graph.pass("diffuse/particles/light/radiance", pass).threads(threads);
+    Lighting { emitted, scale, received, radiance }
+}

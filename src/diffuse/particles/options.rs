@@ -1,0 +1,21 @@
+//! Options of `particles`.
+
+use crate::method::{OptionKind, options};
+
+/// Scattering steps at most.
+pub(crate) const MOST_BOUNCES: u32 = 32;
+
+options! {
+    /// Options of the `particles` diffuse method (Chang, Park & Ihm).
+    ParticlesOptions, "particles":
+    /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
+    count: u32 = 0, draft = 20_000; OptionKind::Integer(0, 600_000), "particles", "linear";
+    /// Scattering steps, the first one included; the gathering step is one more. None: until less than a hundredth of the flux is left.
+    bounces: Option<u32> = None; OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
+    /// Links a side of the square of directions that the first scattering step takes.
+    scatter: u32 = 4; OptionKind::OneOf(&[1, 2, 4, 8]), "links", "quadratic";
+    /// Links a side of the square of directions that irradiance is gathered by.
+    gather: u32 = 16, draft = 8; OptionKind::OneOf(&[8, 16, 24, 32]), "links", "quadratic";
+    /// Points of emissive surfaces that each particle sends a ray to.
+    emitter_samples: u32 = 8, draft = 4, high = 32; OptionKind::Integer(1, 1024), "rays", "linear";
+}

@@ -1,0 +1,73 @@
+//! The last stage: which particles the picture shows, their irradiance, and the pixels. It follows the camera.
+
+use ash::vk;
+
+use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::method::FrameCx;
+use crate::shaders::particles::{Gather, GatherPush, Homes, HomesPush, Shade, ShadePush, Used, UsedPush};
+
+/// Declares the stage; returns the slot.
+pub(super) fn shade(
+    cx: &mut FrameCx<'_, '_>,
+    space: &ParticleSpace,
+    shift: [f32; 3],
+    link_count: u32,
+    radiance: BufferRef<[f32; 4]>,
+) -> ImageRef {
+    let surface = cx.frame.surface;
+    let graph = &mut *cx.graph;
+    let particle_count = space.count;
+    let homes = graph.image("particles.homes", vk::Format::R32_UINT, surface.size);
+    let marks = graph.buffer::<u32>("particles.marks", particle_count as usize);
+    graph.fill_buffer("diffuse/particles/find/clear", marks, 0);
+    let pass = Homes {
+        scene_rays: space.rays.clone(),
+        particles: space.group.clone(),
+        surface: surface.group.clone(),
+        homes: homes.write(),
+        marks: marks.read_write(),
+        push: HomesPush { shift },
+    };
+    graph.pass("diffuse/particles/find/homes", pass).pixels(surface.size);
+    let used = graph.buffer::<u32>("particles.used", particle_count as usize);
+    let counts = graph.buffer::<u32>("particles.used_counts", 2);
+    graph.fill_buffer("diffuse/particles/find/clear-used", used, 0);
+    graph.fill_buffer("diffuse/particles/find/clear-counts", counts, 0);
+    let pass = Used {
+        marks: marks.texels(WORD),
+        list_lengths: space.list_lengths.texels(WORD),
+        lists: space.lists.texels(WORD),
+        used: used.read_write(),
+        counts: counts.read_write(),
+        push: UsedPush { particle_count },
+    };
+    let pass = graph.pass("diffuse/particles/find/used", pass).count("homes", counts, 0).count("particles", counts, 1);
+    pass.threads([particle_count, 1, 1]);
+
+    let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", particle_count as usize);
+    for (number, chunk) in space.chunks.iter().enumerate() {
+        let pass = Gather {
+            used: used.texels(WORD),
+            links: chunk.links.texels(WORD),
+            radiance: radiance.texels(FLOATS4),
+            matter: space.matter.texels(FLOATS4),
+            irradiance: if number == 0 { irradiance.start_then_read() } else { irradiance.read_write() },
+            push: GatherPush { first: chunk.first, count: chunk.count, link_count },
+        };
+        graph.pass(&format!("diffuse/particles/gather.{number}"), pass).threads([chunk.count, 1, 1]);
+    }
+    let diffuse = graph.image("particles.diffuse", vk::Format::R32G32B32A32_SFLOAT, surface.size);
+    let pass = Shade {
+        particles: space.group.clone(),
+        surface: surface.group.clone(),
+        homes: homes.sampled(),
+        list_lengths: space.list_lengths.texels(WORD),
+        lists: space.lists.texels(WORD),
+        irradiance: irradiance.texels(FLOATS4),
+        diffuse: diffuse.write(),
+        push: ShadePush { shift },
+    };
+    graph.pass("diffuse/particles/shade", pass).pixels(surface.size);
+    diffuse
+}
