@@ -6,6 +6,6 @@
 
 layout(set = 0, binding = 136) uniform usamplerBuffer particle_places;   // position in the rays' space, packed shading normal
 layout(set = 0, binding = 137) uniform usamplerBuffer particle_starts;
-layout(set = 0, binding = 138) uniform samplerBuffer particle_spacing;   // one texel: √(area/count), m
+layout(set = 0, binding = 138) uniform SpacingBlock { float particle_spacing; };     // √(area/count), m
 
 #endif

@@ -1,4 +1,4 @@
-// What the diffuse lobe of a surface reflects at a point, for light from anywhere.
+// What a surface is made of at a point, textures included, and what its diffuse lobe reflects of light from anywhere.
 #ifndef PARTICLES_ALBEDO
 #define PARTICLES_ALBEDO
 
@@ -13,7 +13,7 @@ vec4 texel_of(uint material, uint use_number, vec4 sets) {
     return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), vec2(0.0), vec2(0.0));
 }
 
-vec3 diffuse_albedo_at(Triangle triangle, Material material, vec2 place) {
+MaterialPoint textured_point(Triangle triangle, Material material, vec2 place) {
     vec3 weights = vec3(1.0 - place.x - place.y, place);
     vec4 color = VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0);
     MaterialPoint point = material_factors(material, color);
@@ -24,13 +24,24 @@ vec3 diffuse_albedo_at(Triangle triangle, Material material, vec2 place) {
             point.base_color *= texel_of(triangle.material, USE_BASE_COLOR, sets);
         }
         if ((material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u) {
-            point.metallic *= texel_of(triangle.material, USE_METALLIC_ROUGHNESS, sets).b;
+            vec4 texel = texel_of(triangle.material, USE_METALLIC_ROUGHNESS, sets);
+            point.roughness *= texel.g;
+            point.metallic *= texel.b;
         }
         if ((material.flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u) {
             point.transmission *= texel_of(triangle.material, USE_TRANSMISSION, sets).r;
         }
     }
-    Lobes lobes = lobes_of_material(material, point);
+    return point;
+}
+
+// Particles stand on such surfaces.
+bool has_diffuse_lobe(Material material) {
+    return max3(lobes_of_material(material, material_factors(material, vec4(1.0))).diffuse_albedo) > 0.0;
+}
+
+vec3 diffuse_albedo_at(Triangle triangle, Material material, vec2 place) {
+    Lobes lobes = lobes_of_material(material, textured_point(triangle, material, place));
     return clamp(indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90), 0.0, 1.0);
 }
 

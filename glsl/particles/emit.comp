@@ -11,20 +11,26 @@
 #include "lib/octahedral.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
+#include "particles/link.glsl"
 
 // The flux that one particle receives from the lights, W (Chang et al. 4.2.1, for every kind of light):
 //
 //   φ = ΔA·( Σ_punctual I(ω)·cosθ/(d² + ΔA/π)·V + 1/K Σ_k L_e(y_k)·cosθ·cosθ_k/((d² + ΔA/π)·p(y_k))·V + π·L_sky·s )
 //
 // d² + ΔA/π in place of d²: the particle is a disc, which takes no more than a half space of light. y_k: points of emissive surfaces drawn by power with
-// density p; s: the share of the particle's links that escape, which are spread by the cosine.
+// density p; s: what share of the sky's light the particle's links see, which are spread by the cosine, in mirrors and through glass too.
+// To this comes what photons bring off mirrors and through glass (glints.comp).
 
 layout(local_size_x = 64) in;
 
+// 1: photons bring flux off mirrors and through glass.
+layout(constant_id = 0) const uint HAS_GLINTS = 0u;
+
 layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) uniform samplerBuffer matter;
-layout(set = 0, binding = 2) uniform usamplerBuffer escaped;
-layout(set = 0, binding = 3) writeonly buffer Flux { vec4 flux[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer open_sky;  // steps: red, green, blue one by one
+layout(set = 0, binding = 3) readonly buffer Glints { uint glints[]; };  // steps likewise
+layout(set = 0, binding = 4) writeonly buffer Flux { vec4 flux[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint particle_count;
@@ -33,7 +39,8 @@ layout(push_constant, scalar) uniform Push {
     uint sample_count;
     float density_scale;
     float link_share;   // 1 / links of a particle
-    vec3 sky;
+    float watts_a_step;
+    vec3 sky;           // W/(m²·sr)
 } push;
 
 void main() {
@@ -53,7 +60,9 @@ void main() {
     vec3 origin = offset_ray_origin(position, face);
     float disc = area * INVERSE_PI;
 
-    vec3 irradiance = push.sky * (PI * float(texelFetch(escaped, int(particle)).x) * push.link_share);
+    int first = 3 * int(particle);
+    vec3 open = vec3(texelFetch(open_sky, first).x, texelFetch(open_sky, first + 1).x, texelFetch(open_sky, first + 2).x);
+    vec3 irradiance = push.sky * open * (PI * push.link_share / float(SKY_STEPS));
     [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
         vec3 light = vec3(0.0);
         vec3 way = vec3(0.0);
@@ -89,5 +98,8 @@ void main() {
         }
     }
     vec3 received = irradiance * area;
+    if (HAS_GLINTS != 0u) {
+        received += vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step;
+    }
     flux[particle] = vec4(is_finite(received) ? received : vec3(0.0), 0.0);
 }

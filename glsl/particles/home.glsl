@@ -26,7 +26,7 @@ struct Neighbour {
 };
 
 float spacing_of_particles() {
-    return texelFetch(particle_spacing, 0).x;
+    return particle_spacing;
 }
 
 vec3 position_of_particle(uint particle) {

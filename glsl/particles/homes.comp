@@ -18,6 +18,9 @@ layout(set = 0, binding = 1) buffer Marks { uint marks[]; };
 
 layout(push_constant, scalar) uniform Push { vec3 shift; } push;
 
+// Cosine.
+const float EDGE_ON = 0.02;
+
 void main() {
     ivec2 pixel = pixel_of_invocation();
     ivec2 size = imageSize(homes);
@@ -31,7 +34,12 @@ void main() {
         vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         if (max3(indirect_diffuse_albedo(point)) > 0.0) {
-            home = home_of(position_rs + push.shift, point.geometric_normal);
+            vec3 normal = point.geometric_normal;
+            home = home_of(position_rs + push.shift, normal);
+            // Edge-on, rounding decides which side a pixel sees.
+            if (home == NO_PARTICLE && dot(direction_to_eye(camera, position_rs), normal) < EDGE_ON) {
+                home = home_of(position_rs + push.shift, -normal);
+            }
         }
     }
     if (home != NO_PARTICLE) {

@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform Push { vec3 shift; } push;
 const uint NO_PARTICLE = 0xFFFFFFFFu;
 
 vec3 irradiance_at(vec3 position, vec3 normal, uint home) {
-    float radius = KERNEL_SPACINGS * texelFetch(particle_spacing, 0).x;
+    float radius = KERNEL_SPACINGS * particle_spacing;
     // Moments of offsets (u, v) in units of the radius, and of irradiance with them.
     float weights = 0.0;
     vec2 first = vec2(0.0);

@@ -7,7 +7,7 @@ use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
-use crate::shaders::groups::{Particles, SceneRays};
+use crate::shaders::groups::{Lobes, Particles, SceneRays};
 use crate::shaders::particles::{
     AreaSums, AreaSumsPush, Areas, AreasPush, Catch, CatchPush, Fill, FillPush, Links, LinksPush, List, ListPush,
     Matter, MatterPush, Place, PlacePush, Sort, SortPush, Starts, StartsPush,
@@ -46,8 +46,8 @@ pub(super) struct ParticleSpace {
     pub(super) matter: BufferRef<[f32; 4]>,
     pub(super) chunks: Vec<Chunk>,
     pub(super) scatter_links: BufferRef<u32>,
-    /// How many links of each meet the sky.
-    pub(super) escaped: BufferRef<u32>,
+    /// How much of the sky the links of each see, red, green and blue one by one, in steps.
+    pub(super) sky: BufferRef<u32>,
     /// Neighbours of each, in a fixed room.
     pub(super) lists: BufferRef<u32>,
     pub(super) list_lengths: BufferRef<u32>,
@@ -57,6 +57,12 @@ pub(super) struct ParticleSpace {
 fn count_of(scene: &TracedScene, options: &ParticlesOptions) -> u32 {
     let by_area = scene.area / (SPACING * scene.radius).powi(2);
     if options.count > 0 { options.count } else { by_area.clamp(20_000.0, 200_000.0) as u32 }
+}
+
+/// Those that mirrors and glass have.
+pub(super) fn lobes_of(scene: &TracedScene) -> Lobes {
+    let facts = &scene.facts;
+    Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) }
 }
 
 impl ParticleSpace {
@@ -128,17 +134,18 @@ impl ParticleSpace {
         let group = Particles {
             particle_places: places.texels(WORDS4),
             particle_starts: starts.texels(WORD),
-            particle_spacing: spacing.texels(FLOAT),
+            particle_spacing: spacing.uniform(),
         };
         let lost = graph.buffer::<u32>("particles.lost", 2);
         graph.fill_buffer("diffuse/particles/place/clear-lost", lost, 0);
-        let space = Unlinked { particle_count, triangle_count, rays, group, faces, lost };
+        let lobes = lobes_of(scene);
+        let space = Unlinked { lobes, particle_count, triangle_count, rays, group, faces, lost };
         let matter = space.measure(graph, sums);
-        let (chunks, scatter_links, escaped) = space.link(graph, options);
+        let (chunks, scatter_links, sky) = space.link(graph, options);
         let (lists, list_lengths) = space.list(graph);
         let Unlinked { rays, group, .. } = space;
         let count = particle_count;
-        ParticleSpace { count, rays, group, faces, matter, chunks, scatter_links, escaped, lists, list_lengths }
+        ParticleSpace { count, rays, group, faces, matter, chunks, scatter_links, sky, lists, list_lengths }
     }
 }
 
@@ -149,6 +156,7 @@ struct Unlinked {
     rays: SceneRays,
     group: Particles,
     faces: BufferRef<u32>,
+    lobes: Lobes,
     /// Points and link ends that no particle stands for.
     lost: BufferRef<u32>,
 }
@@ -191,8 +199,8 @@ impl Unlinked {
         let particle_count = self.particle_count;
         let scatter_links = (particle_count * scatter_side * scatter_side) as usize;
         let scatter_links = graph.buffer::<u32>("particles.scatter_links", scatter_links);
-        let escaped = graph.buffer::<u32>("particles.escaped", particle_count as usize);
-        graph.fill_buffer("diffuse/particles/link/clear", escaped, 0);
+        let sky = graph.buffer::<u32>("particles.sky", 3 * particle_count as usize);
+        graph.fill_buffer("diffuse/particles/link/clear", sky, 0);
         let firsts = (0..particle_count).step_by(CHUNK as usize);
         let chunks: Vec<Chunk> = (0..)
             .zip(firsts)
@@ -209,7 +217,8 @@ impl Unlinked {
                     } else {
                         scatter_links.read_write()
                     },
-                    escaped: escaped.read_write(),
+                    sky: sky.read_write(),
+                    lobes: self.lobes.clone(),
                     lost: self.lost.read_write(),
                     push: LinksPush { first, count, gather_side, scatter_side },
                 };
@@ -219,7 +228,7 @@ impl Unlinked {
                 Chunk { first, count, links }
             })
             .collect();
-        (chunks, scatter_links, escaped)
+        (chunks, scatter_links, sky)
     }
 
     /// The lists, each of a fixed room, and how long they are.

@@ -1,12 +1,12 @@
 //! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
 
-use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use super::geometry::{FLOATS4, ParticleSpace, WORD, lobes_of};
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::particles::{
-    Emit, EmitPush, FluxScale, FluxScalePush, Radiance, RadiancePush, Scatter, ScatterPush,
+    Emit, EmitPush, FluxScale, FluxScalePush, Glints, GlintsPush, Radiance, RadiancePush, Scatter, ScatterPush,
 };
 
 /// What the stage leaves.
@@ -36,13 +36,16 @@ pub(super) fn light(
     let threads = [particle_count, 1, 1];
     let emitted = graph.buffer::<[f32; 4]>("particles.emitted", particle_count as usize);
     let sample_count = if scene.emissive_count > 0 { options.emitter_samples } else { 0 };
+    let (glints, steps_a_watt) = glints(graph, scene, space, options);
     let pass = Emit {
         scene_rays: space.rays.clone(),
         scene_lights: scene.lights(graph),
         particles: space.group.clone(),
         particle_faces: space.faces.texels(WORD),
         matter: space.matter.texels(FLOATS4),
-        escaped: space.escaped.texels(WORD),
+        open_sky: space.sky.texels(WORD),
+        glints: glints.unwrap_or(space.sky).read(),
+        has_glints: u32::from(glints.is_some()),
         flux: emitted.write(),
         push: EmitPush {
             particle_count,
@@ -51,6 +54,7 @@ pub(super) fn light(
             sample_count,
             density_scale: scene.emissive_density_scale,
             link_share: 1.0 / (options.gather * options.gather) as f32,
+            watts_a_step: (1.0 / steps_a_watt) as f32,
             sky: scene.sky,
         },
     };
@@ -76,7 +80,7 @@ pub(super) fn light(
             emitted: emitted.texels(FLOATS4),
             scatter_links: space.scatter_links.texels(WORD),
             scale: scale.texels(FLOATS4),
-            received: received.last().unwrap_or(&space.escaped).texels(WORD),
+            received: received.last().unwrap_or(&space.sky).texels(WORD),
             next: next.read_write(),
             total: if number == 0 { total.start_then_read() } else { total.read_write() },
             push: ScatterPush { particle_count, link_count, number },
@@ -90,10 +94,52 @@ pub(super) fn light(
         matter: space.matter.texels(FLOATS4),
         total: total.texels(FLOATS4),
         scale: scale.texels(FLOATS4),
-        received: received.last().unwrap_or(&space.escaped).texels(WORD),
+        received: received.last().unwrap_or(&space.sky).texels(WORD),
         radiance: radiance.write(),
         push: RadiancePush { particle_count },
     };
     graph.pass("diffuse/particles/light/radiance", pass).threads(threads);
     Lighting { emitted, scale, received, radiance }
+}
+
+/// What photons bring off mirrors and through glass, in steps, and steps a watt; none where nothing is glossy or the sky alone shines.
+fn glints(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    space: &ParticleSpace,
+    options: &ParticlesOptions,
+) -> (Option<BufferRef<u32>>, f64) {
+    // A channel may carry several times the luminance, and all of it may land on one particle.
+    let steps_a_watt = f64::from(1_u32 << 31) / (16.0 * scene.power.max(1e-30));
+    let target_count = scene.target_shares.count;
+    let reason = match (target_count, scene.emitter_count, options.photons) {
+        (0, ..) => Some("nothing glossy that lights reach"),
+        (_, 0, _) => Some("no light but the sky"),
+        (.., 0) => Some("no photons asked for"),
+        _ => None,
+    };
+    if let Some(reason) = reason {
+        graph.skip("diffuse/particles/light/glints", reason);
+        return (None, steps_a_watt);
+    }
+    let glints = graph.buffer::<u32>("particles.glints", 3 * space.count as usize);
+    graph.fill_buffer("diffuse/particles/light/clear-glints", glints, 0);
+    let photon_count = options.photons;
+    let pass = Glints {
+        scene_rays: space.rays.clone(),
+        scene_lights: scene.lights(graph),
+        light_targets: scene.targets(graph),
+        particles: space.group.clone(),
+        lobes: lobes_of(scene),
+        glints: glints.read_write(),
+        push: GlintsPush {
+            photon_count,
+            emitter_count: scene.emitter_count,
+            target_count,
+            steps_a_watt: steps_a_watt as f32,
+        },
+    };
+    let pass = graph.pass("diffuse/particles/light/glints", pass).note("photons", u64::from(photon_count));
+    pass.threads([photon_count, 1, 1]);
+    (Some(glints), steps_a_watt)
 }

@@ -16,6 +16,8 @@ options! {
     scatter: u32 = 4; OptionKind::OneOf(&[1, 2, 4, 8]), "links", "quadratic";
     /// Links a side of the square of directions that irradiance is gathered by.
     gather: u32 = 16, draft = 8; OptionKind::OneOf(&[8, 16, 24, 32]), "links", "quadratic";
+    /// Photons from lights to mirrors and glass, and on to the first diffuse surface.
+    photons: u32 = 200_000, draft = 40_000, high = 1_000_000; OptionKind::Integer(0, 8_000_000), "photons", "linear";
     /// Points of emissive surfaces that each particle sends a ray to.
     emitter_samples: u32 = 8, draft = 4, high = 32; OptionKind::Integer(1, 1024), "rays", "linear";
 }
