@@ -12,6 +12,7 @@ const uint NO_PARTICLE = 0xFFFFFFFFu;
 // Cosine between the normals of a point and its particle.
 const float SIMILAR = 0.7;
 const float SIMILAR_AT_LEAST = 0.1;
+const float NOT_OPPOSITE = -0.5;
 // Shares of the spacing.
 const float ABOVE = 0.1;
 const float LIFT = 0.15;
@@ -71,18 +72,18 @@ bool sees_particle(vec3 position, vec3 normal, uint particle, float spacing) {
 }
 
 // NO_PARTICLE where there is none within reach. Where no segment is free, the nearest in space takes it: no flux is dropped.
-uint home_of(vec3 position, vec3 normal) {
+uint home_among(vec3 position, vec3 normal, float least_similar, bool any) {
     float spacing = spacing_of_particles();
     float after = -1.0;
     int reach = 0;
     uint nearest = NO_PARTICLE;
     [[dont_unroll]] for (int attempt = 0; attempt < 2 * ATTEMPTS; ++attempt) {
-        Neighbour found = nearest_particle(position, normal, spacing, after, reach == 0 ? SIMILAR : SIMILAR_AT_LEAST, reach);
+        Neighbour found = nearest_particle(position, normal, spacing, after, reach == 0 ? SIMILAR : least_similar, reach);
         bool none = found.particle == NO_PARTICLE;
         if (!none && ((reach == 0 && !found.crowded) || sees_particle(position, normal, found.particle, spacing))) {
             return found.particle;
         }
-        nearest = nearest == NO_PARTICLE ? found.particle : nearest;
+        nearest = nearest == NO_PARTICLE && any ? found.particle : nearest;
         after = found.key;
         if (reach == 0 && (none || attempt == ATTEMPTS - 1)) {
             reach = 1;
@@ -92,6 +93,10 @@ uint home_of(vec3 position, vec3 normal) {
         }
     }
     return nearest;
+}
+
+uint home_of(vec3 position, vec3 normal) {
+    return home_among(position, normal, SIMILAR_AT_LEAST, true);
 }
 
 #endif

@@ -40,6 +40,10 @@ void main() {
             if (home == NO_PARTICLE && dot(direction_to_eye(camera, position_rs), normal) < EDGE_ON) {
                 home = home_of(position_rs + push.shift, -normal);
             }
+            // A thing smaller than the spacing, on which no particle came to lie, gets the light of what is around.
+            if (home == NO_PARTICLE) {
+                home = home_among(position_rs + push.shift, normal, NOT_OPPOSITE, false);
+            }
         }
     }
     if (home != NO_PARTICLE) {

@@ -47,10 +47,13 @@ SurfacePoint surface_point(samplerBuffer sums, uint triangle_count, uint number,
     bool both_sides = (load_material(materials, point.triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u;
     bool back = both_sides && along >= 0.5;
     float side_area = both_sides ? 0.5 * own : own;
-    float k = floor((area - first - (back ? side_area : 0.0)) / step_area);
+    // Numbers are counted from the first one of the side: areas are not exact enough for millions of points.
+    float before = first + (back ? side_area : 0.0);
+    uint k = number - uint(max(ceil(before / step_area - 0.5), 0.0));
     uint shift = seed_of(low * 2u + (back ? 1u : 0u), seed);
-    vec2 start = vec2(shift & 0xFFFFu, shift >> 16) / 65536.0;
-    point.place = place_by_halves(fract(start + k * vec2(0.7548776662466927, 0.5698402909980532)));
+    // In 32 bits: as a float the sequence would lose its spacing after some ten thousand points.
+    uvec2 bits = uvec2(shift << 16, shift & 0xFFFF0000u) + k * uvec2(3242174889u, 2447445414u);
+    point.place = place_by_halves(vec2(bits >> 8) / 16777216.0);
 
     vec3 front = front_normal(point.triangle);
     point.position = point_of_triangle(point.triangle, point.place, front);

@@ -13,6 +13,7 @@ mod error;
 mod instance;
 #[cfg(debug_assertions)]
 mod live_shaders;
+mod marks;
 mod memory;
 mod pipelines;
 pub(crate) mod program;

@@ -19,8 +19,10 @@ const POINTS: u32 = 16;
 const CHUNK: u32 = 32_768;
 /// As in glsl/particles/lists.glsl.
 const LIST_CAPACITY: usize = 48;
-/// A particle's spacing over the scene's radius, unless the options say how many there are.
+/// A particle's spacing over the scene's radius at most and at least, unless the options say how many there are; between these half the size of its finer
+/// triangles.
 const SPACING: f64 = 0.0125;
+const FINEST: f64 = 0.0025;
 
 pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
 const WORDS2: vk::Format = vk::Format::R32G32_UINT;
@@ -55,7 +57,8 @@ pub(super) struct ParticleSpace {
 
 /// The particles of a scene by its area and detail.
 fn count_of(scene: &TracedScene, options: &ParticlesOptions) -> u32 {
-    let by_area = scene.area / (SPACING * scene.radius).powi(2);
+    let spacing = (0.5 * scene.fine_size).clamp(FINEST * scene.radius, SPACING * scene.radius);
+    let by_area = scene.area / spacing.powi(2);
     if options.count > 0 { options.count } else { by_area.clamp(20_000.0, 200_000.0) as u32 }
 }
 

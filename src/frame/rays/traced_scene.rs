@@ -54,6 +54,8 @@ pub(crate) struct TracedScene {
     /// triangle by triangle (glsl/lib/bvh.glsl).
     wide: bool,
     pub(crate) triangle_count: u32,
+    /// The size that all but a sixteenth of the triangles have, metres.
+    pub(crate) fine_size: f64,
     /// The largest share of light that some material's diffuse lobe reflects, textures aside.
     pub(crate) greatest_albedo: f64,
     /// Of the triangles that matter, m².
@@ -174,6 +176,7 @@ impl TracedScene {
                 .map(TracedTriangle::area)
                 .sum(),
             triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
+            fine_size: fine,
             greatest_albedo: scene.materials().iter().map(diffuse_albedo).fold(0.0, f64::max),
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
