@@ -13,7 +13,9 @@ mod error;
 mod instance;
 #[cfg(debug_assertions)]
 mod live_shaders;
+mod loader_lock;
 mod memory;
+mod messages;
 mod pipelines;
 pub(crate) mod program;
 mod queries;
