@@ -3,13 +3,13 @@
 #![allow(unsafe_code, reason = "calls into the Vulkan loader")]
 
 use std::ffi::CStr;
-use std::sync::{Arc, PoisonError};
+use std::sync::PoisonError;
 
 use ash::{ext, vk};
 
 use super::error::{Called, VulkanError};
 use super::loader_lock;
-use super::messages::{Messages, on_message};
+use super::messages::{self, Messages};
 
 /// How much the validation layer checks. Every message it gives fails a test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,8 +85,11 @@ impl Instance {
             .application_info(&application)
             .enabled_extension_names(&extensions)
             .enabled_layer_names(&layers);
+        // Declared before the instance: the layer calls back until that is destroyed.
+        let messages = Messages::default();
+        let mut messenger = messages::messenger(&messages);
         if validation != Validation::Off {
-            info = info.push_next(&mut features);
+            info = info.push_next(&mut features).push_next(&mut messenger);
         }
         // SAFETY: everything `info` points to lives until the end of this function.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
@@ -95,7 +98,6 @@ impl Instance {
         })?;
         // Dropped before the instance may be, which takes it again.
         drop(alone);
-        let messages = Messages::default();
         let mut instance = Instance { raw, debug, messenger: None, messages, _entry: entry };
         if validation != Validation::Off {
             instance.collect_messages()?;
@@ -104,14 +106,8 @@ impl Instance {
     }
 
     fn collect_messages(&mut self) -> Result<(), VulkanError> {
-        use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
-        use vk::DebugUtilsMessageTypeFlagsEXT as Kind;
         let functions = ext::debug_utils::Instance::new(&self._entry, &self.raw);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(Severity::WARNING | Severity::ERROR)
-            .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
-            .pfn_user_callback(Some(on_message))
-            .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
+        let info = messages::messenger(&self.messages);
         // SAFETY: the user data is owned by `self` and outlives the messenger, which `drop` destroys first.
         let messenger =
             unsafe { functions.create_debug_utils_messenger(&info, None) }.called("vkCreateDebugUtilsMessengerEXT")?;

@@ -12,36 +12,44 @@ use ash::vk;
 /// Messages of the validation layer, warnings and worse.
 pub(super) type Messages = Arc<Mutex<Vec<String>>>;
 
-/// Identifiers, or the beginnings of identifiers, of messages that are no findings.
-const NO_FINDINGS: [&str; 2] = [
-    // An output without an attachment is discarded (KhronosGroup/Vulkan-Docs#2125), and its write mask is 0 here besides;
-    // layers since 1.3.290 say that it is not consumed.
-    "Undefined-Value-ShaderOutputNotConsumed",
-    // GPU-assisted validation announces which features and limits it changes, since 1.3.280.
-    "WARNING-Setting",
-];
-
-/// Parts of announcements of older layers, whose identifiers also stand for findings.
-const ANNOUNCEMENTS: [&str; 4] = [
-    "reserved a descriptor",
-    "Forcing vertexPipelineStoresAndAtomics",
-    "Forcing fragmentStoresAndAtomics",
-    "Forcing shaderInt64",
+/// What is no finding: the beginning of a message's identifier, and a part of its text where the identifier also stands for
+/// findings.
+const NO_FINDINGS: [(&str, &str); 11] = [
+    // An output without an attachment is discarded (KhronosGroup/Vulkan-Docs#2125), and its write mask is 0 here besides.
+    // Newer layers say that it is not consumed, older ones compare its type with that of the absent attachment.
+    ("Undefined-Value-ShaderOutputNotConsumed", ""),
+    ("UNASSIGNED-CoreValidation-Shader-InterfaceTypeMismatch", "VK_FORMAT_UNDEFINED"),
+    // A stream without a stride holds one vertex for all indices. GPU-assisted validation takes its bytes for its vertices.
+    ("VUID-vkCmdDraw", "Binding stride: 0 bytes"),
+    // GPU-assisted validation announces what it reserves, which features and limits it changes, and that it is slow.
+    ("WARNING-Setting", ""),
+    ("WARNING-GPU-Assisted-Validation", "Internal Warning: Forcing"),
+    ("WARNING-GPU-Assisted-Validation", "Internal Warning: Setting"),
+    ("VALIDATION-SETTINGS", "Both GPU Assisted Validation and Normal Core Check Validation are enabled"),
+    ("UNASSIGNED-", "reserved a descriptor"),
+    ("UNASSIGNED-", "Forcing vertexPipelineStoresAndAtomics"),
+    ("UNASSIGNED-", "Forcing fragmentStoresAndAtomics"),
+    ("UNASSIGNED-", "Forcing shaderInt64"),
 ];
 
 fn is_finding(identifier: &str, text: &str) -> bool {
-    let named = NO_FINDINGS.iter().any(|begin| identifier.starts_with(begin));
-    let announced = ANNOUNCEMENTS.iter().any(|part| text.contains(part));
-    // What layers before 1.3.290 say of an output without an attachment: they compare its type with that of the absent
-    // attachment. Of an attachment that is there it is a finding.
-    let absent_attachment =
-        identifier.ends_with("Shader-InterfaceTypeMismatch") && text.contains("VK_FORMAT_UNDEFINED");
-    !(named || announced || absent_attachment)
+    !NO_FINDINGS.iter().any(|(begin, part)| identifier.starts_with(begin) && text.contains(part))
+}
+
+/// What the messenger is made of. Given with an instance too it hears what is said while that is made.
+pub(super) fn messenger(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'_> {
+    use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
+    use vk::DebugUtilsMessageTypeFlagsEXT as Kind;
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(Severity::WARNING | Severity::ERROR)
+        .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
+        .pfn_user_callback(Some(on_message))
+        .user_data(Arc::as_ptr(messages).cast_mut().cast())
 }
 
 /// SAFETY: called by the validation layer with valid data, and with a pointer to the mutex inside `Messages`, which lives
 /// as long as the messenger.
-pub(super) unsafe extern "system" fn on_message(
+unsafe extern "system" fn on_message(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
@@ -90,6 +98,18 @@ mod tests {
         for (identifier, text) in absent {
             assert!(!is_finding(identifier, text), "{identifier}");
         }
+        let vertices = "Vertex index 10 is not within the smallest bound vertex buffer.\n- Binding stride: ";
+        for (identifier, text) in [
+            (
+                "WARNING-GPU-Assisted-Validation",
+                "vkCreateDevice(): Internal Warning: Forcing timelineSemaphore to VK_TRUE",
+            ),
+            ("VUID-vkCmdDrawIndexed-None-02721", &format!("{vertices}0 bytes")),
+        ] {
+            assert!(!is_finding(identifier, text), "{identifier}");
+        }
+        assert!(is_finding("VUID-vkCmdDrawIndexed-None-02721", &format!("{vertices}8 bytes")));
+        assert!(is_finding("WARNING-GPU-Assisted-Validation", "Internal Warning: nothing will be checked"));
         let present = old.replace("VK_FORMAT_UNDEFINED", "VK_FORMAT_R8G8B8A8_UINT");
         assert!(is_finding("UNASSIGNED-CoreValidation-Shader-InterfaceTypeMismatch", &present));
         assert!(is_finding("Undefined-Value-ShaderInputNotProduced", "input Location 1 is not written."));
