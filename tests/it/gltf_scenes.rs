@@ -255,6 +255,17 @@ fn files_outside_the_scenes_folder_are_read_only_if_allowed() {
     for uri in ["near.bin", "./near.bin", "sub/../near.bin", "../scene/near.bin"] {
         assert!(load(uri, &LoadOptions::default()).is_ok(), "{uri} is in the folder, however it is spelled");
     }
+    let scene = folder.join("outside.gltf");
+    std::fs::write(&scene, file.gltf("../data.bin")).expect("the test's own folder");
+    let program = |more: &[&str]| {
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_irradia"));
+        program.args(["graph", "--size", "16x16"]).arg(&scene).args(more).output().expect("the program starts")
+    };
+    let refused = program(&[]);
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!((refused.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+    assert!(message.contains("--allow-outside-files"), "{message}");
+    assert!(program(&["--allow-outside-files"]).status.success());
 }
 
 #[test]
