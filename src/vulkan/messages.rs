@@ -14,7 +14,7 @@ pub(super) type Messages = Arc<Mutex<Vec<String>>>;
 
 /// What is no finding: the beginning of a message's identifier, and a part of its text where the identifier also stands for
 /// findings.
-const NO_FINDINGS: [(&str, &str); 11] = [
+const NO_FINDINGS: [(&str, &str); 12] = [
     // An output without an attachment is discarded (KhronosGroup/Vulkan-Docs#2125), and its write mask is 0 here besides.
     // Newer layers say that it is not consumed, older ones compare its type with that of the absent attachment.
     ("Undefined-Value-ShaderOutputNotConsumed", ""),
@@ -25,6 +25,8 @@ const NO_FINDINGS: [(&str, &str); 11] = [
     ("WARNING-Setting", ""),
     ("WARNING-GPU-Assisted-Validation", "Internal Warning: Forcing"),
     ("WARNING-GPU-Assisted-Validation", "Internal Warning: Setting"),
+    // No shader here has ray queries.
+    ("WARNING-GPU-Assisted-Validation", "Disabling gpuav_validate_ray_query"),
     ("VALIDATION-SETTINGS", "Both GPU Assisted Validation and Normal Core Check Validation are enabled"),
     ("UNASSIGNED-", "reserved a descriptor"),
     ("UNASSIGNED-", "Forcing vertexPipelineStoresAndAtomics"),
