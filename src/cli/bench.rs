@@ -1,14 +1,13 @@
 //! `irradia bench`: techniques side by side on scenes; tables to standard output, reports to files.
 
 use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use irradia::bench::report::{Failure, Report, Run};
 use irradia::bench::{ErrorsUnknown, Finished, Options, PICTURE_TONE_MAP, References, Subject, run as measure, tables};
-use irradia::output::{self, AtomicFile};
+use irradia::output::{self, Target};
 use irradia::reference::Cache;
 use irradia::renderer::{Context, Preset, Settings, Technique};
 
@@ -98,7 +97,7 @@ pub(crate) fn run(args: &BenchArgs, invocation: &Invocation<'_>) -> Result<()> {
     if report.runs.len() > 1 {
         invocation.terminal.print(&tables::summary_text(&report.runs))?;
     }
-    write_reports(args, &report)?;
+    bench.files.write(&report)?;
     invocation.check_validation(&bench.context)?;
     match report.failures.as_slice() {
         [] => Ok(()),
@@ -113,6 +112,7 @@ struct Bench<'a> {
     context: Context,
     contenders: Vec<Settings>,
     options: Options,
+    files: ReportFiles,
     cache: Option<Cache>,
     terminal: &'a Terminal,
 }
@@ -120,9 +120,7 @@ struct Bench<'a> {
 impl Bench<'_> {
     /// Finds out what can go wrong before the first frame: devices, and files that could not be written.
     fn new<'a>(args: &'a BenchArgs, invocation: &Invocation<'a>) -> Result<Bench<'a>> {
-        for path in [&args.json, &args.csv, &args.md].into_iter().flatten() {
-            output::check_target(path)?;
-        }
+        let files = ReportFiles::open(args)?;
         let mut contenders = Vec::new();
         for technique in Choice::expand(&args.technique, &Technique::ALL) {
             for preset in &args.preset {
@@ -139,7 +137,7 @@ impl Bench<'_> {
         if let Some(folder) = &args.images {
             fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
         }
-        Ok(Bench { args, context, contenders, options, cache, terminal: invocation.terminal })
+        Ok(Bench { args, context, contenders, options, files, cache, terminal: invocation.terminal })
     }
 
     fn frames_per_scene(&self) -> u64 {
@@ -215,18 +213,31 @@ impl Bench<'_> {
     }
 }
 
-fn write_reports(args: &BenchArgs, report: &Report) -> Result<()> {
-    let write = |path: &Option<PathBuf>, text: &dyn Fn() -> Result<String>| match path {
-        Some(path) => write_text(path, &text()?),
-        None => Ok(()),
-    };
-    write(&args.json, &|| Ok(serde_json::to_string_pretty(report)? + "\n"))?;
-    write(&args.csv, &|| Ok(tables::csv(report)))?;
-    write(&args.md, &|| Ok(tables::markdown(report)))
+/// The files that tell what was measured.
+struct ReportFiles {
+    json: Option<Target>,
+    csv: Option<Target>,
+    md: Option<Target>,
 }
 
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
-    Ok(AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?)
+impl ReportFiles {
+    fn open(args: &BenchArgs) -> Result<ReportFiles> {
+        let open = |path: &Option<PathBuf>| path.as_deref().map(Target::open).transpose();
+        Ok(ReportFiles { json: open(&args.json)?, csv: open(&args.csv)?, md: open(&args.md)? })
+    }
+
+    fn write(&self, report: &Report) -> Result<()> {
+        if let Some(target) = &self.json {
+            target.write((serde_json::to_string_pretty(report)? + "\n").as_bytes())?;
+        }
+        if let Some(target) = &self.csv {
+            target.write(tables::csv(report).as_bytes())?;
+        }
+        if let Some(target) = &self.md {
+            target.write(tables::markdown(report).as_bytes())?;
+        }
+        Ok(())
+    }
 }
 
 fn sentences(failures: &[Failure]) -> String {

@@ -1,7 +1,6 @@
 //! `irradia compare`: how far one picture is from another.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
@@ -9,7 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::comparison::{ComparisonReport, IMAGE_LAYER, NamedImage, layer, layers};
 use irradia::bench::tables;
 use irradia::metrics::{self, HEAT_MAP_RANGE};
-use irradia::output::{self, AtomicFile, Attributes, ExrImage, ImageFormat};
+use irradia::output::{self, Attributes, ExrImage, ImageFormat, Target};
 use irradia::renderer::ColorImage;
 
 use super::invocation::Invocation;
@@ -37,9 +36,8 @@ pub(crate) struct CompareArgs {
 
 /// Prints the table, then writes the files asked for.
 pub(crate) fn run(args: &CompareArgs, invocation: &Invocation<'_>) -> Result<()> {
-    for path in [&args.json, &args.heatmap].into_iter().flatten() {
-        output::check_target(path)?;
-    }
+    let open = |path: &Option<PathBuf>| path.as_deref().map(Target::open).transpose();
+    let (json, heatmap) = (open(&args.json)?, open(&args.heatmap)?);
     let (image, reference) = (output::read_exr(&args.image)?, output::read_exr(&args.reference)?);
     let names = [&args.image, &args.reference].map(|path| path.display().to_string());
     warn_of_lone_layers([(&names[0], &image), (&names[1], &reference)]);
@@ -51,17 +49,16 @@ pub(crate) fn run(args: &CompareArgs, invocation: &Invocation<'_>) -> Result<()>
         let known = layers().filter(|name| report.errors.contains_key(*name)).collect::<Vec<_>>().join(", ");
         layer(file, args.slot).with_context(|| format!("{name} has no slot {}; both files have {known}", args.slot))
     };
-    let heat_map = match &args.heatmap {
-        Some(path) => Some((path, find(&names[0], &image)?, find(&names[1], &reference)?)),
+    let heat_map = match heatmap {
+        Some(target) => Some((target, find(&names[0], &image)?, find(&names[1], &reference)?)),
         None => None,
     };
     invocation.terminal.print(&tables::comparison_text(&report))?;
-    if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&report)? + "\n";
-        AtomicFile::write_whole(path, |file| file.write_all(text.as_bytes()))?;
+    if let Some(target) = json {
+        target.write((serde_json::to_string_pretty(&report)? + "\n").as_bytes())?;
     }
-    if let Some((path, image, reference)) = heat_map {
-        write_heat_map(path, image, reference, &report, args.slot)?;
+    if let Some((target, image, reference)) = heat_map {
+        write_heat_map(&target, image, reference, &report, args.slot)?;
     }
     Ok(())
 }
@@ -78,7 +75,7 @@ fn warn_of_lone_layers(files: [(&str, &ExrImage); 2]) {
 }
 
 fn write_heat_map(
-    path: &Path,
+    target: &Target,
     image: &ColorImage,
     reference: &ColorImage,
     report: &ComparisonReport,
@@ -95,7 +92,7 @@ fn write_heat_map(
         ("heatmap", &shows),
     ];
     let attributes: Attributes = attributes.map(|(name, value)| (name.to_owned(), value.to_owned())).into();
-    Ok(output::write_png(path, map.size, &map.pixels, &attributes)?)
+    Ok(output::write_png(target, map.size, &map.pixels, &attributes)?)
 }
 
 /// A file of linear radiance. Whatever is not known for display values is tried as EXR.

@@ -23,11 +23,23 @@ pub(crate) fn single(path: &Path, frame: u32) -> PathBuf {
     fill_pattern(&name, frame).map_or_else(|| path.to_owned(), |name| path.with_file_name(name))
 }
 
-/// A name for a file made of words that may hold anything, such as a scene's name.
+/// Bytes of a name made of words; with an extension it is well below the 255 that names may have.
+const LONGEST: usize = 240;
+
+/// A name for a file made of words that may hold anything, such as a scene's name. Of one that is too long the middle is
+/// replaced by a number that tells it from others of the same ends.
 pub(crate) fn from_words(words: &[&str]) -> String {
     let harmless =
         |character: char| if character.is_alphanumeric() || "-_.".contains(character) { character } else { '_' };
-    words.join("-").chars().map(harmless).collect()
+    let name: String = words.join("-").chars().map(harmless).collect();
+    if name.len() <= LONGEST {
+        return name;
+    }
+    let number = blake3::hash(name.as_bytes()).to_hex();
+    let whole = |at: &usize| name.is_char_boundary(*at);
+    let start = (0..LONGEST / 2).rfind(whole).unwrap_or_default();
+    let end = (name.len() - LONGEST / 4..name.len()).find(whole).unwrap_or(name.len());
+    format!("{}-{}-{}", &name[..start], &number[..16], &name[end..])
 }
 
 fn fill_pattern(name: &str, frame: u32) -> Option<String> {
@@ -55,5 +67,11 @@ mod tests {
     #[test]
     fn names_from_words_stay_in_their_folder() {
         assert_eq!(from_words(&["../a b", "rsm"]), ".._a_b-rsm");
+    }
+
+    #[test]
+    fn names_from_words_are_as_long_as_names_may_be() {
+        let [one, other] = ["x", "y"].map(|middle| from_words(&[&"台".repeat(60), middle, &"所".repeat(60), "draft"]));
+        assert!(one.len() + ".png".len() <= 255 && one != other && one.ends_with("-draft"), "{one} {other}");
     }
 }

@@ -1,11 +1,10 @@
 //! `irradia graph`: the passes of a frame, and which are skipped and why.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use irradia::output::AtomicFile;
+use irradia::output::Target;
 use irradia::renderer::{CrashMarkers, FrameRequest, Renderer};
 
 use super::invocation::Invocation;
@@ -28,14 +27,15 @@ pub(crate) struct GraphArgs {
 
 /// Describes the frame that the bench would measure; nothing is rendered.
 pub(crate) fn run(args: &GraphArgs, invocation: &Invocation<'_>) -> Result<()> {
+    let dot = args.dot.as_deref().map(Target::open).transpose()?;
     let settings = args.methods.settings()?;
     let scene = args.scene_args.open(&args.scene)?.scene;
     let context = invocation.context(CrashMarkers::On)?;
     let request = FrameRequest::new(args.scene_args.size, args.scene_args.view(&scene)?);
     let request = request.with(|request| request.read_back = false);
     let description = Renderer::new(&context, settings)?.describe(&scene, &request)?;
-    if let Some(path) = &args.dot {
-        AtomicFile::write_whole(path, |file| file.write_all(description.dot().as_bytes()))?;
+    if let Some(target) = dot {
+        target.write(description.dot().as_bytes())?;
     }
     invocation.terminal.print(&format!("{}\n", description.text().trim_end()))?;
     invocation.check_validation(&context)

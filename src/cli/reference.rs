@@ -6,7 +6,7 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use irradia::bench::tables;
-use irradia::output::{self, ImageFormat};
+use irradia::output::{ImageFormat, Target};
 use irradia::reference::{
     Cache, CausticPaths, Estimator, Goal, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, estimator_name,
     merge,
@@ -80,9 +80,7 @@ const ALL: &str = "all";
 
 /// Does what the arguments say: one of making, merging, listing, clearing.
 pub(crate) fn run(args: &ReferenceArgs, invocation: &Invocation<'_>) -> Result<()> {
-    if let Some(output) = &args.output {
-        output::check_target(output)?;
-    }
+    let output = args.output.as_deref().map(Target::open).transpose()?;
     if args.list {
         return list(invocation);
     }
@@ -95,15 +93,21 @@ pub(crate) fn run(args: &ReferenceArgs, invocation: &Invocation<'_>) -> Result<(
             bail!(WrongUsage { subcommand: "reference", message });
         }
         let merged = merge(parts)?;
-        return report(&merged, &merged_places(args, &merged)?, invocation);
+        return report(&merged, &merged_places(output.as_ref(), &merged)?, invocation);
     }
     match (&args.scene, args.spp) {
-        (Some(scene), Some(spp)) => make(args, scene, spp, invocation),
+        (Some(scene), Some(spp)) => make(args, scene, spp, output.as_ref(), invocation),
         _ => bail!(WrongUsage { subcommand: "reference", message: "a reference needs a SCENE and --spp N" }),
     }
 }
 
-fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>) -> Result<()> {
+fn make(
+    args: &ReferenceArgs,
+    spec: &str,
+    spp: u32,
+    output: Option<&Target>,
+    invocation: &Invocation<'_>,
+) -> Result<()> {
     let mut scene = args.scene_args.open(spec)?.scene;
     scene.set_frame(args.frame);
     let request = ReferenceRequest {
@@ -120,9 +124,9 @@ fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>)
     let mut steps = Steps::new(invocation.terminal, &scene.name);
     let mut progress = |progress| steps.show(progress);
     let mut places = Vec::new();
-    let file = match (args.shard, &args.output) {
+    let file = match (args.shard, output) {
         (Some(shard), Some(output)) => {
-            places.push(output.clone());
+            places.push(output.path().to_owned());
             job.make_shard(spp, shard, output, &mut progress)?
         }
         (_, output) => {
@@ -130,7 +134,7 @@ fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>)
             let file = job.make(Goal { spp, noise: args.noise }, cache.as_ref(), &mut progress)?;
             if let Some(output) = output {
                 file.write(output)?;
-                places.push(output.clone());
+                places.push(output.path().to_owned());
             }
             places.extend(cache.and_then(|cache| cache.find(file.key())));
             file
@@ -153,11 +157,11 @@ fn make(args: &ReferenceArgs, spec: &str, spp: u32, invocation: &Invocation<'_>)
 }
 
 /// Writes what was merged where the arguments say.
-fn merged_places(args: &ReferenceArgs, merged: &ReferenceFile) -> Result<Vec<PathBuf>> {
-    match &args.output {
+fn merged_places(output: Option<&Target>, merged: &ReferenceFile) -> Result<Vec<PathBuf>> {
+    match output {
         Some(output) => {
             merged.write(output)?;
-            Ok(vec![output.clone()])
+            Ok(vec![output.path().to_owned()])
         }
         None => Ok(vec![cache()?.keep(merged)?]),
     }

@@ -1,12 +1,12 @@
 //! `irradia render`: frames of a scene to files.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use irradia::image::tone_map;
-use irradia::output::{self, ImageFormat};
+use irradia::output::{self, ImageFormat, Target};
 use irradia::reference::IMAGE;
 use irradia::renderer::{CrashMarkers, Frame, FrameRequest, Renderer, Slot, ToneMap};
 use irradia::scene::{CameraView, FRAME_RATE};
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
         tracing::warn!("an EXR holds linear radiance, so --tonemap changes nothing");
     }
     let start = Instant::now();
-    output::check_target(&path_of(args, args.frames.map_or(args.frame, |range| range.first)))?;
+    let mut opened = Some(Target::open(&path_of(args, args.frames.map_or(args.frame, |range| range.first)))?);
     let settings = args.methods.settings_of_pictures()?;
     let loaded = args.scene_args.open(&args.scene)?;
     let mut scene = loaded.scene;
@@ -111,7 +111,8 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
             estimate: frame.estimate.as_ref(),
         };
         let writing = Instant::now();
-        write(&path_of(args, number), format, &frame, &picture)?;
+        let target = opened.take().unwrap_or_else(|| Target::from(&path_of(args, number)));
+        write(&target, format, &frame, &picture)?;
         spent.write += writing.elapsed().as_secs_f64();
         step(progress.as_ref());
     }
@@ -186,18 +187,18 @@ fn written_names(args: &RenderArgs, first: u32, last: u32) -> String {
     if from == to { from.display().to_string() } else { format!("{} to {}", from.display(), to.display()) }
 }
 
-fn write(path: &Path, format: ImageFormat, frame: &Frame, picture: &Picture<'_>) -> Result<()> {
+fn write(target: &Target, format: ImageFormat, frame: &Frame, picture: &Picture<'_>) -> Result<()> {
     let attributes = picture.attributes();
     match format {
         ImageFormat::Exr => {
             let image = frame.image.as_ref().context("the renderer gave back no image")?;
-            output::write_exr(path, image, &frame.slots, &attributes)?;
+            output::write_exr(target, image, &frame.slots, &attributes)?;
         }
         ImageFormat::Png => {
             let display = frame.display.as_ref().context("the renderer gave back no display values")?;
-            output::write_png(path, frame.size, display, &attributes)?;
+            output::write_png(target, frame.size, display, &attributes)?;
         }
-        other => bail!("{} cannot be written as {other:?}", path.display()),
+        other => bail!("{} cannot be written as {other:?}", target.path().display()),
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use clap::Args;
-use irradia::scene::{CameraView, LightSpec, Scene, parse_sky};
+use irradia::scene::{CameraView, LightSpec, LoadOptions, Scene, parse_sky};
 
 use super::values;
 
@@ -23,6 +23,31 @@ pub(crate) struct SceneArgs {
     /// Radiance of the sky, W/(m² sr)
     #[arg(long, value_name = "R,G,B", value_parser = parse_sky)]
     sky: Option<[f32; 3]>,
+    #[command(flatten)]
+    load: LoadArgs,
+}
+
+/// What reading a scene may do.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Scene files")]
+pub(crate) struct LoadArgs {
+    /// Read files that the glTF file names outside its own folder: by .., absolute paths, file: URIs or symbolic links
+    #[arg(long)]
+    allow_outside_files: bool,
+    /// Memory that the textures of a scene may take, in MiB at four bytes a texel [default: 4096]
+    #[arg(long, value_name = "MIB")]
+    max_texture_mib: Option<u32>,
+}
+
+impl LoadArgs {
+    pub(crate) fn options(&self) -> LoadOptions {
+        LoadOptions::default().with(|options| {
+            options.allow_outside_files = self.allow_outside_files;
+            if let Some(mib) = self.max_texture_mib {
+                options.texture_bytes = u64::from(mib) << 20;
+            }
+        })
+    }
 }
 
 /// A scene ready to render, and the host time that loading it took.
@@ -35,7 +60,7 @@ impl SceneArgs {
     /// Opens a path or a built-in scene, adds the lights, and warns of what the user should know.
     pub(crate) fn open(&self, spec: &str) -> anyhow::Result<LoadedScene> {
         let start = Instant::now();
-        let mut scene = Scene::open(spec)?;
+        let mut scene = Scene::open_with(spec, &self.load.options())?;
         let load_ms = 1e3 * start.elapsed().as_secs_f64();
         for light in &self.lights {
             scene.add_light_spec(light)?;

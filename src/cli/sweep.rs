@@ -9,15 +9,14 @@ use clap::Args;
 use irradia::bench::report::Device;
 use irradia::bench::sweep::{self, Grid, GridScene, Group, Outcomes, Point, Shard, Sweep};
 use irradia::bench::{Options, References, Subject, run as measure};
-use irradia::output;
+use irradia::output::Target;
 use irradia::reference::Cache;
 use irradia::renderer::{Context, Settings};
-use irradia::scene::{CameraView, Scene};
+use irradia::scene::{CameraView, LoadOptions, Scene};
 
-use super::bench::write_text;
 use super::invocation::{Invocation, TimedArgs};
 use super::reference::open_cache;
-use super::scene_args::warn_of;
+use super::scene_args::{LoadArgs, warn_of};
 use super::terminal::{Progress, Steps, Terminal};
 use super::{files, values};
 
@@ -56,24 +55,25 @@ pub(crate) struct SweepArgs {
     plots: Option<PathBuf>,
     #[command(flatten)]
     timed: TimedArgs,
+    #[command(flatten)]
+    load: LoadArgs,
 }
 
 /// Measures or merges, prints the tables, writes the files. What fails is told at the end.
 pub(crate) fn run(args: &SweepArgs, invocation: &Invocation<'_>) -> Result<()> {
-    for path in [&args.json, &args.csv].into_iter().flatten() {
-        output::check_target(path)?;
-    }
+    let open = |path: &Option<PathBuf>| path.as_deref().map(Target::open).transpose();
+    let (json, csv) = (open(&args.json)?, open(&args.csv)?);
     if let Some(folder) = &args.plots {
         fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
     }
     let sweep = match &args.grid {
-        Some(path) => measure_grid(args, path, invocation)?,
+        Some(path) => measure_grid(args, path, json.as_ref(), invocation)?,
         None => {
             let parts: Result<Vec<_>, _> =
                 args.merge.iter().map(|path| Sweep::read(path).map(|part| (path.clone(), part))).collect();
             let sweep = Sweep::merge(parts?)?;
-            if let Some(path) = &args.json {
-                sweep.write(path)?;
+            if let Some(target) = &json {
+                sweep.write(target)?;
             }
             invocation.terminal.print(&format!("{}\n\n", sweep.measured_by()))?;
             for scene in &sweep.grid.scenes {
@@ -82,8 +82,8 @@ pub(crate) fn run(args: &SweepArgs, invocation: &Invocation<'_>) -> Result<()> {
             sweep
         }
     };
-    if let Some(path) = &args.csv {
-        write_text(path, &sweep::csv(&sweep))?;
+    if let Some(target) = csv {
+        target.write(sweep::csv(&sweep).as_bytes())?;
     }
     if let Some(folder) = &args.plots {
         write_plots(&sweep, folder)?;
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &SweepArgs, invocation: &Invocation<'_>) -> Result<()> {
 }
 
 /// Measures what is not yet measured of the grid, or of a part of it.
-fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> Result<Sweep> {
+fn measure_grid(args: &SweepArgs, path: &Path, json: Option<&Target>, invocation: &Invocation<'_>) -> Result<Sweep> {
     let mut grid = Grid::load(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     for scene in &grid.scenes {
@@ -135,6 +135,7 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
         context: &context,
         grid: &grid,
         folder,
+        load_options: args.load.options(),
         opened: None,
         cache: cache.as_ref(),
         progress: &progress,
@@ -150,8 +151,8 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
     // A reader of the tables sees a scene as soon as its last point is done.
     let mut shown = 0;
     let mut save = |sweep: &Sweep| -> Result<()> {
-        if let Some(path) = &args.json {
-            sweep.write(path)?;
+        if let Some(target) = json.filter(|target| !target.is_stream()) {
+            sweep.write(target)?;
         }
         while shown < grid.scenes.len() && is_done(sweep, &points, shown) {
             print_scene(sweep, &grid.scenes[shown], invocation.terminal)?;
@@ -162,6 +163,10 @@ fn measure_grid(args: &SweepArgs, path: &Path, invocation: &Invocation<'_>) -> R
     save(&result)?;
     sweep::run(&mut result, &points, &mut measure, &mut save)?;
     drop(progress);
+    // What was saved into a stream cannot be taken back.
+    if let Some(target) = json.filter(|target| target.is_stream()) {
+        result.write(target)?;
+    }
     invocation.check_validation(&context)?;
     Ok(result)
 }
@@ -181,6 +186,7 @@ struct Bench<'a> {
     grid: &'a Grid,
     /// Where the grid lies: its files are seen from there.
     folder: &'a Path,
+    load_options: LoadOptions,
     opened: Option<Opened>,
     /// Of the references, which are read from it again for every group.
     cache: Option<&'a Cache>,
@@ -200,7 +206,7 @@ impl Bench<'_> {
         self.progress.about(&group.scene.name);
         let opened = match self.opened.take() {
             Some(opened) if opened.name == group.scene.name => opened,
-            _ => open(group.scene, self.folder)?,
+            _ => open(group.scene, self.folder, &self.load_options)?,
         };
         let Opened { name, scene, camera, load_ms } = &opened;
         let subject = Subject { name, scene, camera, load_ms: *load_ms };
@@ -231,9 +237,9 @@ impl Bench<'_> {
     }
 }
 
-fn open(scene: &GridScene, folder: &Path) -> Result<Opened, String> {
+fn open(scene: &GridScene, folder: &Path, options: &LoadOptions) -> Result<Opened, String> {
     let start = Instant::now();
-    let opened = scene.open(folder)?;
+    let opened = scene.open(folder, options)?;
     let load_ms = 1e3 * start.elapsed().as_secs_f64();
     warn_of(&opened, "add one in the grid, light = [\"sun:45,60\"], or a sky, sky = [1, 1, 1]");
     let camera = opened.camera_view(scene.camera.as_deref()).map_err(|error| error.to_string())?;
@@ -249,7 +255,10 @@ fn print_scene(sweep: &Sweep, scene: &GridScene, terminal: &Terminal) -> Result<
 fn write_plots(sweep: &Sweep, folder: &Path) -> Result<()> {
     for scene in &sweep.grid.scenes {
         match sweep::plot(sweep, &scene.name) {
-            Some(text) => write_text(&folder.join(files::from_words(&[&scene.name]) + ".svg"), &text)?,
+            Some(text) => {
+                let path = folder.join(files::from_words(&[&scene.name]) + ".svg");
+                Target::from(&path).write(text.as_bytes())?;
+            }
             None => tracing::warn!("{} has no point with an error, so there is no plot of it", scene.name),
         }
     }

@@ -26,6 +26,7 @@ mod layouts;
 mod leaks;
 mod light_share;
 mod lists;
+mod loader;
 mod memory;
 mod numbers;
 mod path_caustics;

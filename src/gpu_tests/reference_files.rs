@@ -1,7 +1,7 @@
 //! References by the path tracer: however their samples come together, the bits are the same.
 
 use super::session::Session;
-use crate::output::atomic_file::tests::TestFolder;
+use crate::output::target::tests::TestFolder;
 use crate::reference::{
     Cache, CausticPaths, Estimator, Job, PixelFilter, ReferenceFile, ReferenceRequest, Shard, merge,
 };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::layers::{Layers, read_layers, write_layers};
-use super::{Attributes, OutputError};
+use super::{Attributes, OutputError, Target};
 use crate::image::ColorImage;
 use crate::slot::Slot;
 
@@ -25,19 +25,19 @@ pub struct ExrImage {
 /// # Errors
 /// The file cannot be written, or the slots are not of the image's size.
 pub fn write_exr(
-    path: &Path,
+    target: impl Into<Target>,
     image: &ColorImage,
     slots: &BTreeMap<Slot, ColorImage>,
     attributes: &Attributes,
 ) -> Result<(), OutputError> {
-    let [width, height] = image.size;
+    let (target, [width, height]) = (target.into(), image.size);
     if let Some((slot, layer)) = slots.iter().find(|(_, layer)| layer.size != image.size) {
         let reason = format!("layer {slot} has {} pixels, the image {width}x{height}", layer.pixels.len());
-        return Err(OutputError::write(path, reason));
+        return Err(OutputError::write(target.path(), reason));
     }
     let layers = slots.iter().map(|(slot, layer)| (slot.name().to_owned(), &layer.pixels[..]));
     let layers: Vec<_> = [(String::new(), &image.pixels[..])].into_iter().chain(layers).collect();
-    write_layers(path, image.size, &layers, attributes)
+    write_layers(&target, image.size, &layers, attributes)
 }
 
 /// Reads an image and the layers that are named like slots; other channels are left out.
@@ -61,8 +61,8 @@ mod tests {
     use ::exr::prelude::{Compression, LineOrder};
 
     use super::*;
-    use crate::output::atomic_file::tests::TestFolder;
     use crate::output::layers::REC_709;
+    use crate::output::target::tests::TestFolder;
 
     fn gradient(size: [u32; 2], offset: f32) -> ColorImage {
         let pixels = (0..size[0] * size[1]).map(|index| [offset + index as f32, -1e-30 * index as f32, 1e30]).collect();
@@ -134,5 +134,22 @@ mod tests {
         assert!(folder.names().is_empty());
         let message = read_exr(&path).expect_err("there is none").to_string();
         assert!(message.contains("a.exr"), "{message}");
+    }
+
+    #[test]
+    fn a_file_too_small_for_what_it_claims_is_refused_before_anything_is_allocated() {
+        let folder = TestFolder::new("exr-claim");
+        let path = folder.0.join("a.exr");
+        write_exr(&path, &gradient([2, 2], 0.0), &BTreeMap::new(), &Attributes::new()).expect("written");
+        let mut bytes = fs::read(&path).expect("written");
+        let window = b"dataWindow\0box2i\0";
+        let at = bytes.windows(window.len()).position(|part| part == window).expect("every file has one");
+        let values = at + window.len() + 4;
+        // 1024×1024 pixels of three floats, 12 MiB, in less than a thousandth of it.
+        bytes[values + 8..values + 16].copy_from_slice(&[1023_u32.to_le_bytes(); 2].concat());
+        bytes.resize(8 << 10, 0);
+        fs::write(&path, bytes).expect("writable");
+        let message = read_exr(&path).expect_err("it claims too much").to_string();
+        assert!(message.contains("too small"), "{message}");
     }
 }

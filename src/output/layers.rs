@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{Cursor, Write as _};
+use std::io::Cursor;
 use std::path::Path;
 
 use ::exr::prelude::{
@@ -11,7 +11,7 @@ use ::exr::prelude::{
 };
 
 use super::header::sort_attributes;
-use super::{AtomicFile, Attributes, OutputError, seal};
+use super::{Attributes, OutputError, Target, seal};
 
 /// The channels of a layer.
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
@@ -29,13 +29,12 @@ pub(super) const REC_709: ::exr::meta::attribute::Chromaticities = ::exr::meta::
 /// # Errors
 /// The file cannot be written, or there are not `size[0] * size[1]` pixels in every layer.
 pub(super) fn write_layers(
-    path: &Path,
+    target: &Target,
     size: [u32; 2],
     layers: &[(String, &[[f32; 3]])],
     attributes: &Attributes,
 ) -> Result<(), OutputError> {
-    let bytes = encode(path, size, layers, attributes)?;
-    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+    target.write(&encode(target.path(), size, layers, attributes)?)
 }
 
 /// As [`write_layers`], with a checksum over all of the file as one more attribute.
@@ -43,16 +42,16 @@ pub(super) fn write_layers(
 /// # Errors
 /// Those of [`write_layers`].
 pub(crate) fn write_sealed_layers(
-    path: &Path,
+    target: &Target,
     size: [u32; 2],
     layers: &[(String, &[[f32; 3]])],
     attributes: &Attributes,
 ) -> Result<(), OutputError> {
     let mut attributes = attributes.clone();
     attributes.insert(seal::ATTRIBUTE.to_owned(), seal::OPEN.to_owned());
-    let mut bytes = encode(path, size, layers, &attributes)?;
+    let mut bytes = encode(target.path(), size, layers, &attributes)?;
     seal::close(&mut bytes);
-    AtomicFile::write_whole(path, |file| file.write_all(&bytes))
+    target.write(&bytes)
 }
 
 /// The bytes of a file; `path` is for messages alone.
@@ -151,16 +150,34 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, OutputError> {
     fs::read(path).map_err(|error| OutputError::read(path, error))
 }
 
-/// No compression of OpenEXR makes images smaller than by this factor.
-const MOST_COMPRESSION: u64 = 4096;
+/// The factor by which a compression makes images smaller at the most.
+fn most_compression(compression: Compression) -> u64 {
+    match compression {
+        Compression::Uncompressed => 1,
+        // A run of 128 bytes in two.
+        Compression::RLE => 64,
+        // A match of 258 bytes in two bits; PXR24 also drops a byte in four.
+        Compression::ZIP1 | Compression::ZIP16 => 1032,
+        Compression::PXR24 => 1376,
+        // A block of 4×4 halves in three bytes.
+        Compression::B44 | Compression::B44A => 11,
+        _ => 4096,
+    }
+}
 
 fn decode(path: &Path, bytes: &[u8]) -> Result<Layers, OutputError> {
     let failed = |error: ::exr::error::Error| OutputError::read(path, error);
     // The decoder believes the header; a damaged one can ask for more memory than there is.
     let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;
-    let asked =
-        meta.headers.iter().map(|header| header.layer_size.area() as u64 * header.channels.bytes_per_pixel as u64);
-    if asked.fold(0, u64::saturating_add) > MOST_COMPRESSION * bytes.len() as u64 {
+    let least = meta.headers.iter().map(|header| {
+        let pixels = u64::try_from(header.layer_size.area()).unwrap_or(u64::MAX);
+        let stored = header.channels.list.iter().map(|channel| {
+            let bytes = pixels.saturating_mul(channel.sample_type.bytes_per_sample() as u64);
+            bytes / (channel.sampling.area() as u64).max(1)
+        });
+        stored.fold(0, u64::saturating_add) / most_compression(header.compression)
+    });
+    if least.fold(0, u64::saturating_add) > bytes.len() as u64 {
         return Err(OutputError::read(path, "it is damaged: it is too small for the images that it says it has"));
     }
     let document = ::exr::prelude::read()

@@ -1,32 +1,41 @@
 //! PNG: the tone-mapped image, 8 bits a channel, sRGB, with its attributes as text chunks.
 
-use std::path::Path;
-
-use super::{AtomicFile, Attributes, OutputError};
+use super::{Attributes, OutputError, Target};
 
 /// Writes sRGB-encoded pixels, in rows from the top left. Attributes become UTF-8 text chunks (`iTXt`) of their names.
 ///
 /// # Errors
 /// The file cannot be written, or there are not `size[0] * size[1]` pixels.
-pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[u8; 3]], attributes: &Attributes) -> Result<(), OutputError> {
-    AtomicFile::write_whole(path, |file| {
-        let mut encoder = png::Encoder::new(file, size[0], size[1]);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        for (name, value) in attributes {
-            encoder.add_itxt_chunk(name.clone(), value.clone())?;
-        }
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(pixels.as_flattened())?;
-        writer.finish()
-    })
+pub fn write_png(
+    target: impl Into<Target>,
+    size: [u32; 2],
+    pixels: &[[u8; 3]],
+    attributes: &Attributes,
+) -> Result<(), OutputError> {
+    let target = target.into();
+    let bytes = encode(size, pixels, attributes).map_err(|error| OutputError::write(target.path(), error))?;
+    target.write(&bytes)
+}
+
+fn encode(size: [u32; 2], pixels: &[[u8; 3]], attributes: &Attributes) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (name, value) in attributes {
+        encoder.add_itxt_chunk(name.clone(), value.clone())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels.as_flattened())?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::atomic_file::tests::TestFolder;
+    use crate::output::target::tests::TestFolder;
 
     #[test]
     fn pixels_and_attributes_come_back() {

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::about::About;
+use super::cache_lock::CacheLock;
 use super::{ReferenceError, ReferenceFile, ReferenceKey};
 use crate::output::{OutputError, read_attributes};
 
@@ -12,7 +13,8 @@ const FOLDER_VARIABLE: &str = "IRRADIA_CACHE_DIR";
 
 const EXTENSION: &str = ".exr";
 
-/// A folder of references. Several processes may use it at a time: files appear whole, and the last one written stays.
+/// A folder of references. Several processes may use it at a time: files appear whole, they are changed under a lock, and of
+/// one reference the file with the most samples stays.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: PathBuf,
@@ -94,26 +96,24 @@ impl Cache {
         }
     }
 
-    /// Puts a reference into the cache, in place of one of the same key.
+    /// Puts a reference into the cache unless it holds one of the same key with as many samples. Gives the file that holds
+    /// it now.
     ///
     /// # Errors
     /// The folder cannot be made or the file cannot be written.
-    pub fn write(&self, file: &ReferenceFile) -> Result<PathBuf, OutputError> {
-        let path = self.find(file.key()).unwrap_or_else(|| self.folder.join(file_name(&file.about)));
+    pub fn keep(&self, file: &ReferenceFile) -> Result<PathBuf, OutputError> {
         fs::create_dir_all(&self.folder)
             .map_err(|error| OutputError::Write { path: self.folder.clone(), reason: error.to_string() })?;
-        file.write(&path)?;
-        Ok(path)
-    }
-
-    /// Puts a finished reference into the cache unless it holds one of the same key with more samples.
-    ///
-    /// # Errors
-    /// As [`Cache::write`].
-    pub fn keep(&self, file: &ReferenceFile) -> Result<PathBuf, OutputError> {
-        let present =
-            self.find(file.key()).filter(|_| self.read(file.key()).is_some_and(|old| old.spp() >= file.spp()));
-        present.map_or_else(|| self.write(file), Ok)
+        let _lock = CacheLock::take(&self.folder);
+        match self.find(file.key()) {
+            // All of the file is read only if by its header it would stay.
+            Some(path) if spp_of(&path) >= file.spp() && self.read(file.key()).is_some() => Ok(path),
+            present => {
+                let path = present.unwrap_or_else(|| self.folder.join(file_name(&file.about)));
+                file.write(&path)?;
+                Ok(path)
+            }
+        }
     }
 
     /// Everything in the cache, by name.
@@ -127,6 +127,7 @@ impl Cache {
     /// # Errors
     /// [`ReferenceError::NotCached`] if no key begins so; a file that cannot be removed.
     pub fn clear(&self, prefix: Option<&str>) -> Result<Vec<Entry>, ReferenceError> {
+        let _lock = self.folder.is_dir().then(|| CacheLock::take(&self.folder));
         let mut entries = self.list();
         if let Some(prefix) = prefix {
             let begins = |entry: &Entry| {
@@ -174,6 +175,11 @@ fn file_name(about: &About) -> String {
     // Names of files are limited to 255 bytes.
     let scene: String = about.attribute("scene").chars().take(48).map(harmless).collect();
     format!("{scene}-{width}x{height}-{}{EXTENSION}", about.key.prefix())
+}
+
+/// Samples per pixel by the file's header; 0 if it cannot be read.
+fn spp_of(path: &Path) -> u32 {
+    read_attributes(path).ok().and_then(|attributes| attributes.get("spp")?.parse().ok()).unwrap_or_default()
 }
 
 fn entry(path: PathBuf) -> Entry {

@@ -13,7 +13,7 @@ use std::path::Path;
 use super::about::{About, Spent};
 use super::blocks::{Block, HALVES, MAX_LEVEL, SlotPixels, State};
 use super::{Reference, ReferenceError, ReferenceKey, Shard};
-use crate::output::{Attributes, OutputError, SealedError, read_sealed_layers, write_sealed_layers};
+use crate::output::{Attributes, OutputError, SealedError, Target, read_sealed_layers, write_sealed_layers};
 use crate::slot::Slot;
 
 /// A reference or a shard of one, with all that is needed to go on with it.
@@ -50,12 +50,12 @@ impl ReferenceFile {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+    pub fn write(&self, target: impl Into<Target>) -> Result<(), OutputError> {
         let reference = self.reference();
         let mut layers: Vec<(String, &[[f32; 3]])> = vec![(String::new(), &reference.image.pixels)];
         layers.extend(reference.slots.iter().map(|(slot, image)| (slot.name().to_owned(), &image.pixels[..])));
         layers.extend(state_layers(&self.state));
-        write_sealed_layers(path, self.about.size, &layers, &self.attributes(&reference))
+        write_sealed_layers(&target.into(), self.about.size, &layers, &self.attributes(&reference))
     }
 
     /// Reads a file that [`ReferenceFile::write`] wrote.

@@ -14,6 +14,7 @@ mod about;
 mod auto;
 mod blocks;
 mod cache;
+mod cache_lock;
 mod error;
 mod file;
 mod key;

@@ -1,7 +1,6 @@
 //! Getting a reference: what the cache holds of it, and the samples that are still missing.
 
 use std::ops::Range;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::about::{About, Spent};
@@ -10,7 +9,7 @@ use super::request::source;
 use super::shard::chunks_of;
 use super::{Cache, Reference, ReferenceError, ReferenceFile, ReferenceRequest, SampleSource, Shard};
 use crate::method::Error;
-use crate::output::OutputError;
+use crate::output::{OutputError, Target};
 use crate::renderer::Context;
 use crate::scene::Scene;
 
@@ -81,10 +80,10 @@ impl<'a> Job<'a> {
         &self,
         spp: u32,
         shard: Shard,
-        path: &Path,
+        target: impl Into<Target>,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<ReferenceFile, ReferenceError> {
-        self.work().make_shard(spp, shard, path, progress)
+        self.work().make_shard(spp, shard, target, progress)
     }
 
     fn work(&self) -> Work<'a> {
@@ -130,7 +129,7 @@ impl Work<'_> {
         let most = chunk_limit(goal.spp)?;
         let cached = cache.and_then(|cache| cache.read(&self.about.key));
         let mut file = cached.unwrap_or_else(|| ReferenceFile::new(self.about.clone()));
-        let mut saver = Saver::new(|file: &ReferenceFile| cache.map_or(Ok(()), |cache| cache.write(file).map(drop)));
+        let mut saver = Saver::new(|file: &ReferenceFile| cache.map_or(Ok(()), |cache| cache.keep(file).map(drop)));
         let mut counted = Counted::new(&file.state.missing(0..most), progress);
         loop {
             let finished = file.state.chunk_count();
@@ -153,9 +152,10 @@ impl Work<'_> {
         mut self,
         spp: u32,
         shard: Shard,
-        path: &Path,
+        target: impl Into<Target>,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<ReferenceFile, ReferenceError> {
+        let target = target.into();
         chunk_limit(spp)?;
         let chunks = shard.chunks(spp);
         if chunks.is_empty() {
@@ -163,20 +163,23 @@ impl Work<'_> {
         }
         let mut file = ReferenceFile::new(self.about.clone());
         file.shard = Some((shard, spp));
-        if let Ok(there) = ReferenceFile::read(path)
+        // A stream has nothing to go on with, and gets the shard once, when it is whole.
+        let resumable = !target.is_stream();
+        if resumable
+            && let Ok(there) = ReferenceFile::read(target.path())
             && there.about.key == file.about.key
             && there.shard == file.shard
         {
             file = there;
         }
         let missing = file.state.missing(chunks.clone());
-        let mut saver = Saver::new(|file: &ReferenceFile| file.write(path));
+        let mut saver = Saver::new(|file: &ReferenceFile| if resumable { file.write(&target) } else { Ok(()) });
         let filled = self.fill(&mut file, chunks, &mut saver, &mut Counted::new(&missing, progress));
         if filled.is_err() {
             saver.finish(&file);
         }
         filled?;
-        file.write(path)?;
+        file.write(&target)?;
         Ok(file)
     }
 

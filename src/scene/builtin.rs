@@ -1,6 +1,6 @@
 //! The scenes that come with irradia: small glTF files in `scenes/`, built into the program.
 
-use super::{Scene, SceneError};
+use super::{LoadOptions, Scene, SceneError};
 use std::path::Path;
 
 struct Builtin {
@@ -53,15 +53,24 @@ impl Scene {
         Some(Scene::from_bytes(builtin.name, builtin.bytes, None))
     }
 
-    /// What a command line means by a scene: a file, if it exists or ends in .gltf or .glb, else a built-in scene.
+    /// What a command line means by a scene: a file, if it exists or ends in .gltf or .glb, else a built-in scene. With the
+    /// default [`LoadOptions`].
     ///
     /// # Errors
     /// [`SceneError::UnknownScene`], which lists the built-in scenes; else those of [`Scene::load`].
     pub fn open(spec: &str) -> Result<Scene, SceneError> {
+        Scene::open_with(spec, &LoadOptions::default())
+    }
+
+    /// As [`Scene::open`], with options.
+    ///
+    /// # Errors
+    /// Those of [`Scene::open`].
+    pub fn open_with(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
         let path = Path::new(spec);
         let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
         if path.is_file() || extension.is_some_and(|extension| extension == "gltf" || extension == "glb") {
-            return Scene::load(path);
+            return Scene::load_with(path, options);
         }
         Scene::builtin(spec)
             .unwrap_or_else(|| Err(SceneError::UnknownScene { name: spec.to_owned(), known: NAMES.join(", ") }))

@@ -23,6 +23,7 @@
 //! | `bvh` | the hierarchy that shaders trace rays through |
 //! | `rays` | rays against all triangles, for those views |
 //! | `gltf/` | reading files |
+//! | `load_options` | what reading may do |
 //! | `builtin` | the scenes that come with irradia |
 //!
 //! Units are metres, radians, seconds and watts; colours are linear Rec. 709. Transforms are f64 throughout.
@@ -48,6 +49,7 @@ mod gltf;
 mod ids;
 mod indoor_view;
 mod light;
+mod load_options;
 mod material;
 mod mesh;
 mod rays;
@@ -65,6 +67,7 @@ pub use error::SceneError;
 pub use facts::Facts;
 pub use ids::{CameraId, LightId, MaterialId, MeshId, NodeId, TextureId};
 pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
+pub use load_options::LoadOptions;
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub use world::{FRAME_RATE, Node, Revisions, Scene};

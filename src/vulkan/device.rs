@@ -14,6 +14,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
+use super::loader_lock;
 use super::report::{self, DeviceReport, Survey};
 
 /// Which device, and how closely it is watched.
@@ -84,12 +85,15 @@ impl Device {
             .enabled_features(&core)
             .push_next(&mut vulkan13)
             .push_next(&mut vulkan12);
+        // The functions of the device are looked up too.
+        let alone = loader_lock::changing();
         // SAFETY: the physical device belongs to the instance; the features were found present by the survey.
         let raw = unsafe { instance.raw.create_device(physical, &info, None) }.called("vkCreateDevice")?;
         // SAFETY: the family and its queue 0 were asked for above.
         let queue = unsafe { raw.get_device_queue(survey.queue_family, 0) };
         let marking = Marking::new(options.crash_markers, marker, &instance.raw, &raw);
         let labels = instance.debug.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
+        drop(alone);
         let description = AllocatorCreateDesc {
             instance: instance.raw.clone(),
             device: raw.clone(),
@@ -110,6 +114,7 @@ impl Device {
         let allocator = match allocator {
             Ok(allocator) => ManuallyDrop::new(Mutex::new(allocator)),
             Err(error) => {
+                let _alone = loader_lock::changing();
                 // SAFETY: nothing else was made on the device.
                 unsafe { raw.destroy_device(None) };
                 return Err(error);
@@ -190,6 +195,7 @@ impl Device {
     pub(crate) fn set_name(&self, object: impl vk::Handle, name: &str) {
         let (Some(labels), Ok(name)) = (&self.labels, std::ffi::CString::new(name)) else { return };
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        let _shared = loader_lock::walking();
         // SAFETY: the object was made on this device and is alive in the caller's hands. A refused name loses nothing.
         let _ = unsafe { labels.set_debug_utils_object_name(&info) };
     }
@@ -205,6 +211,7 @@ impl Drop for Device {
         unsafe {
             let _ = self.raw.device_wait_idle();
             ManuallyDrop::drop(&mut self.allocator);
+            let _alone = loader_lock::changing();
             self.raw.destroy_device(None);
         }
     }

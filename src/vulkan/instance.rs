@@ -2,12 +2,14 @@
 
 #![allow(unsafe_code, reason = "calls into the Vulkan loader")]
 
-use std::ffi::{CStr, c_void};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::ffi::CStr;
+use std::sync::PoisonError;
 
 use ash::{ext, vk};
 
 use super::error::{Called, VulkanError};
+use super::loader_lock;
+use super::messages::{self, Messages};
 
 /// How much the validation layer checks. Every message it gives fails a test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,9 +28,6 @@ pub enum Validation {
 
 const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// Messages of the validation layer, warnings and worse.
-pub(crate) type Messages = Arc<Mutex<Vec<String>>>;
-
 /// The loader and an instance of it. Owned by the device; destroyed after it.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
@@ -42,6 +41,7 @@ pub(crate) struct Instance {
 
 impl Instance {
     pub(crate) fn new(validation: Validation) -> Result<Instance, VulkanError> {
+        let alone = loader_lock::changing();
         // SAFETY: the loader is the system's Vulkan library; its initialisers have no precondition.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| VulkanError::NoLoader(error.to_string()))?;
         // SAFETY: the entry is loaded.
@@ -85,15 +85,19 @@ impl Instance {
             .application_info(&application)
             .enabled_extension_names(&extensions)
             .enabled_layer_names(&layers);
+        // Declared before the instance: the layer calls back until that is destroyed.
+        let messages = Messages::default();
+        let mut messenger = messages::messenger(&messages);
         if validation != Validation::Off {
-            info = info.push_next(&mut features);
+            info = info.push_next(&mut features).push_next(&mut messenger);
         }
         // SAFETY: everything `info` points to lives until the end of this function.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
             vk::Result::ERROR_INCOMPATIBLE_DRIVER => VulkanError::NoDevice,
             result => VulkanError::Call { call: "vkCreateInstance".to_owned(), result },
         })?;
-        let messages = Messages::default();
+        // Dropped before the instance may be, which takes it again.
+        drop(alone);
         let mut instance = Instance { raw, debug, messenger: None, messages, _entry: entry };
         if validation != Validation::Off {
             instance.collect_messages()?;
@@ -102,14 +106,8 @@ impl Instance {
     }
 
     fn collect_messages(&mut self) -> Result<(), VulkanError> {
-        use vk::DebugUtilsMessageSeverityFlagsEXT as Severity;
-        use vk::DebugUtilsMessageTypeFlagsEXT as Kind;
         let functions = ext::debug_utils::Instance::new(&self._entry, &self.raw);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(Severity::WARNING | Severity::ERROR)
-            .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
-            .pfn_user_callback(Some(on_message))
-            .user_data(Arc::as_ptr(&self.messages).cast_mut().cast());
+        let info = messages::messenger(&self.messages);
         // SAFETY: the user data is owned by `self` and outlives the messenger, which `drop` destroys first.
         let messenger =
             unsafe { functions.create_debug_utils_messenger(&info, None) }.called("vkCreateDebugUtilsMessengerEXT")?;
@@ -123,6 +121,7 @@ impl Instance {
     }
 
     pub(crate) fn physical_devices(&self) -> Result<Vec<vk::PhysicalDevice>, VulkanError> {
+        let _alone = loader_lock::changing();
         // SAFETY: the instance is alive.
         unsafe { self.raw.enumerate_physical_devices() }.called("vkEnumeratePhysicalDevices")
     }
@@ -130,6 +129,7 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
+        let _alone = loader_lock::changing();
         // SAFETY: the device, the only other user, is destroyed before its instance (field order in `Device`).
         unsafe {
             if let Some((functions, messenger)) = self.messenger.take() {
@@ -150,34 +150,4 @@ fn validation_layer(entry: &ash::Entry) -> Result<&'static CStr, VulkanError> {
 /// `1.3.230` from Vulkan's packed form.
 pub(crate) fn version_text(version: u32) -> String {
     format!("{}.{}.{}", vk::api_version_major(version), vk::api_version_minor(version), vk::api_version_patch(version))
-}
-
-/// SAFETY: called by the validation layer with valid data, and with the user data given at creation.
-unsafe extern "system" fn on_message(
-    _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
-    _kind: vk::DebugUtilsMessageTypeFlagsEXT,
-    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
-    user: *mut c_void,
-) -> vk::Bool32 {
-    // SAFETY: `user` is the `Mutex` inside `Instance::messages`, alive as long as the messenger.
-    let messages = unsafe { &*user.cast::<Mutex<Vec<String>>>() };
-    // SAFETY: the layer passes valid data, its message a string that ends in zero, or null.
-    let text = unsafe { data.as_ref().and_then(|data| data.message_as_c_str()) }
-        .map(CStr::to_string_lossy)
-        .unwrap_or_default();
-    // GPU-assisted validation announces what it reserves and which features it turns on; that is no finding.
-    let announcement = [
-        "reserved a descriptor",
-        "Forcing vertexPipelineStoresAndAtomics",
-        "Forcing fragmentStoresAndAtomics",
-        "Forcing shaderInt64",
-    ];
-    // An output without an attachment is discarded (KhronosGroup/Vulkan-Docs#2125), and its write mask is 0 here besides;
-    // the layer compares its type with that of the absent attachment all the same.
-    let absent_attachment = text.contains("Shader-InterfaceTypeMismatch") && text.contains("VK_FORMAT_UNDEFINED");
-    if !absent_attachment && !text.contains("WARNING-Setting") && !announcement.iter().any(|part| text.contains(part)) {
-        tracing::warn!("validation: {text}");
-        messages.lock().unwrap_or_else(PoisonError::into_inner).push(text.into_owned());
-    }
-    vk::FALSE
 }

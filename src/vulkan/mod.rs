@@ -13,8 +13,10 @@ mod error;
 mod instance;
 #[cfg(debug_assertions)]
 mod live_shaders;
+mod loader_lock;
 mod marks;
 mod memory;
+mod messages;
 mod pipelines;
 pub(crate) mod program;
 mod queries;

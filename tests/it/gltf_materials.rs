@@ -1,7 +1,7 @@
 //! What the glTF reader promises of materials and textures, feature by feature, on files made here.
 
 use crate::gltf_file::{self, File};
-use irradia::scene::{Alpha, Wrap};
+use irradia::scene::{Alpha, LoadOptions, Scene, Wrap};
 use serde_json::{Value, json};
 
 fn fault(file: &File) -> String {
@@ -126,6 +126,37 @@ fn images_that_claim_more_than_they_hold_are_refused() {
     let texture = file.texture(&image, json!({}));
     file.material(json!({"emissiveTexture": {"index": texture}}));
     assert!(fault(&file).contains("16383×16383"), "{}", fault(&file));
+}
+
+#[test]
+fn what_a_jpeg_can_hold_is_less_than_what_a_png_can() {
+    let mut image = gltf_file::jpeg(&[200]);
+    let frame = image.windows(2).position(|marker| marker == [0xFF, 0xC0]).expect("the header of a frame");
+    image[frame + 5..frame + 9].copy_from_slice(&[0x3F, 0xFF, 0x3F, 0xFF]); // 16383 × 16383
+    image.resize(32 << 10, 0);
+    let mut file = File::triangle();
+    let texture = file.texture(&image, json!({}));
+    file.material(json!({"emissiveTexture": {"index": texture}}));
+    let fault = fault(&file);
+    assert!(fault.contains("16383×16383") && fault.contains("524224 at the least"), "{fault}");
+}
+
+#[test]
+fn the_caller_says_how_large_images_may_be() {
+    let mut file = File::triangle();
+    let texture = file.texture(&gltf_file::png(3, 2, &[0; 24]), json!({}));
+    file.material(json!({"emissiveTexture": {"index": texture}}));
+    let load = |image_side, texture_bytes| {
+        let limits =
+            |options: &mut LoadOptions| (options.image_side, options.texture_bytes) = (image_side, texture_bytes);
+        let (text, options) = (file.gltf(&file.data_uri()), LoadOptions::default().with(limits));
+        Scene::from_bytes_with("test", text.as_bytes(), None, &options).map_err(|error| error.to_string())
+    };
+    let error = load(2, 24).expect_err("three texels");
+    assert!(error.contains("LoadOptions::image_side"), "{error}");
+    let error = load(3, 23).expect_err("24 bytes");
+    assert!(error.contains("--max-texture-mib") && error.contains("LoadOptions::texture_bytes"), "{error}");
+    load(3, 24).expect("just so");
 }
 
 #[test]

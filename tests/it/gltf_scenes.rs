@@ -1,8 +1,9 @@
 //! What the glTF reader promises of nodes, cameras, lights, animations and files as such, on files made here.
 
+use crate::files::empty_folder;
 use crate::gltf_file::File;
 use glam::{DAffine3, DQuat, DVec3};
-use irradia::scene::{LightKind, NodeId, Projection, Scene, SceneError};
+use irradia::scene::{LightKind, LoadOptions, NodeId, Projection, Scene, SceneError};
 use serde_json::json;
 
 fn fault(file: &File) -> String {
@@ -212,9 +213,9 @@ fn uris_that_lead_elsewhere_are_refused() {
     let file = File::triangle();
     for (uri, expected) in [
         ("http://example.org/a.bin", "relative path"),
-        ("file:///etc/passwd", "relative path"),
-        ("/etc/passwd", "absolute"),
-        ("%2Fetc/passwd", "absolute"),
+        ("file:///etc/passwd", "--allow-outside-files"),
+        ("/etc/passwd", "--allow-outside-files"),
+        ("%2Fetc/passwd", "--allow-outside-files"),
         ("a%zz.bin", "percent"),
         ("missing.bin", "missing.bin"),
         ("data:application/octet-stream;base64,@@@@", "base64"),
@@ -224,6 +225,61 @@ fn uris_that_lead_elsewhere_are_refused() {
         let error = result.expect_err(uri).to_string();
         assert!(error.contains(expected), "{uri}: {error}");
     }
+}
+
+#[test]
+fn files_outside_the_scenes_folder_are_read_only_if_allowed() {
+    let root = empty_folder("gltf-scenes", "outside");
+    let folder = root.join("scene");
+    std::fs::create_dir_all(folder.join("sub")).expect("the test's own folder");
+    let file = File::triangle();
+    std::fs::write(root.join("data.bin"), &file.bin).expect("the test's own folder");
+    std::fs::write(folder.join("near.bin"), &file.bin).expect("the test's own folder");
+    let mut outside = vec!["../data.bin".to_owned(), "%2e%2e/data.bin".to_owned(), "sub/../../data.bin".to_owned()];
+    let path = root.join("data.bin").display().to_string();
+    outside.extend([format!("file://{path}"), format!("file://localhost{path}"), path]);
+    #[cfg(unix)]
+    for (name, to) in [("link.bin", "../data.bin"), ("far", "..")] {
+        std::os::unix::fs::symlink(to, folder.join(name)).expect("links can be made");
+        outside.push(if name == "far" { "far/data.bin".to_owned() } else { name.to_owned() });
+    }
+    let load = |uri: &str, options: &LoadOptions| {
+        Scene::from_bytes_with("test", file.gltf(uri).as_bytes(), Some(&folder), options)
+    };
+    let allowed = LoadOptions::default().with(|options| options.allow_outside_files = true);
+    for uri in &outside {
+        let error = load(uri, &LoadOptions::default()).expect_err(uri).to_string();
+        assert!(error.contains("--allow-outside-files"), "{uri}: {error}");
+        assert_eq!(load(uri, &allowed).expect(uri).instances().len(), 1);
+    }
+    for uri in ["near.bin", "./near.bin", "sub/../near.bin", "../scene/near.bin"] {
+        assert!(load(uri, &LoadOptions::default()).is_ok(), "{uri} is in the folder, however it is spelled");
+    }
+    let scene = folder.join("outside.gltf");
+    std::fs::write(&scene, file.gltf("../data.bin")).expect("the test's own folder");
+    let program = |more: &[&str]| {
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_irradia"));
+        program.args(["graph", "--size", "16x16"]).arg(&scene).args(more).output().expect("the program starts")
+    };
+    let refused = program(&[]);
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!((refused.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+    assert!(message.contains("--allow-outside-files"), "{message}");
+    assert!(program(&["--allow-outside-files"]).status.success());
+}
+
+#[test]
+fn files_larger_than_the_limit_are_not_read() {
+    let folder = empty_folder("gltf-scenes", "large");
+    let file = File::triangle();
+    let sparse = std::fs::File::create(folder.join("data.bin")).expect("the test's own folder");
+    sparse.set_len(1 << 40).expect("files may have holes");
+    std::fs::write(folder.join("scene.gltf"), file.gltf("data.bin")).expect("the test's own folder");
+    let error = Scene::load(&folder.join("scene.gltf")).expect_err("a tebibyte").to_string();
+    assert!(error.contains("LoadOptions::file_bytes"), "{error}");
+    let few = LoadOptions::default().with(|options| options.file_bytes = 16);
+    let error = Scene::load_with(&folder.join("scene.gltf"), &few).expect_err("it has more").to_string();
+    assert!(error.contains("scene.gltf"), "{error}");
 }
 
 #[test]

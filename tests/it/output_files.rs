@@ -61,6 +61,49 @@ fn a_place_that_takes_no_file_is_a_failure() {
     assert_eq!(names_in(&folder), ["a.png", "file"]);
 }
 
+/// A pipe of a name, and a thread that reads it to its end.
+#[cfg(unix)]
+fn named_pipe(path: &Path) -> std::thread::JoinHandle<Vec<u8>> {
+    let made = Command::new("mkfifo").arg(path).status().expect("mkfifo is there");
+    assert!(made.success());
+    let path = path.to_owned();
+    std::thread::spawn(move || fs::read(path).expect("the pipe can be read"))
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_opened_once_and_gets_everything() {
+    let folder = folder("pipe");
+    let (picture, graph) = (folder.join("a.exr"), folder.join("a.dot"));
+    let reader = named_pipe(&picture);
+    let done = render(&picture, &[]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(reader.join().expect("it reads").starts_with(&[0x76, 0x2f, 0x31, 0x01]), "the magic number of an EXR");
+    let reader = named_pipe(&graph);
+    let mut program = Command::new(env!("CARGO_BIN_EXE_irradia"));
+    let done = program.args(["graph", "plane", "--size", "16x16", "--dot"]).arg(&graph).output().expect("it starts");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(reader.join().expect("it reads").starts_with(b"digraph"));
+    assert_eq!(names_in(&folder), ["a.dot", "a.exr"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_goes_to_the_standard_output_joins_what_is_there() {
+    let folder = folder("standard-output");
+    let path = folder.join("all.txt");
+    fs::write(&path, "before\n").expect("the test's own folder");
+    let output = fs::OpenOptions::new().append(true).open(&path).expect("it is there");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_irradia"));
+    program.args(["graph", "plane", "--size", "16x16", "--dot", "/dev/stdout"]).stdout(output);
+    assert!(program.status().expect("it starts").success());
+    let text = fs::read_to_string(&path).expect("it is there");
+    let graph = text.find("digraph").expect("what the option asks for");
+    let table = text.find("\npass").or(text.find("compose")).expect("what the command prints");
+    assert!(text.starts_with("before\n") && graph < text.len() && table > 0, "{text}");
+    assert_eq!(names_in(&folder), ["all.txt"]);
+}
+
 #[test]
 #[cfg_attr(not(target_os = "linux"), ignore = "a folder that even root cannot write to")]
 fn a_folder_that_cannot_be_written_to_is_a_failure() {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use irradia::bench::sweep::{Grid, Sweep};
+use irradia::scene::LoadOptions;
 
 use crate::files::empty_folder;
 
@@ -46,7 +47,7 @@ fn text(path: &Path) -> &str {
 fn point_count(toml: &str, path: &str) -> usize {
     let grid = Grid::parse(toml, Path::new(path)).unwrap_or_else(|error| panic!("{error}"));
     for scene in &grid.scenes {
-        scene.open(&root().join("sweeps")).expect("the scenes of a grid are there");
+        scene.open(&root().join("sweeps"), &LoadOptions::default()).expect("the scenes of a grid are there");
     }
     grid.points().expect("checked when it was read").len()
 }

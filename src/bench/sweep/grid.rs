@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::bench::report::{ImageErrors, Run};
 use crate::renderer::{Preset, Slot, Technique};
-use crate::scene::{LightSpec, Scene, SceneError, builtin_names};
+use crate::scene::{LightSpec, LoadOptions, Scene, SceneError, builtin_names};
 
 /// The column of the whole frame.
 pub const FRAME_COLUMN: &str = "frame";
@@ -247,9 +247,9 @@ impl GridScene {
     ///
     /// # Errors
     /// Those of [`Scene::open`] and of the lights, as a sentence.
-    pub fn open(&self, folder: &Path) -> Result<Scene, String> {
+    pub fn open(&self, folder: &Path, options: &LoadOptions) -> Result<Scene, String> {
         let said = |error: SceneError| error.to_string();
-        let mut scene = Scene::open(&self.spec(folder)).map_err(said)?;
+        let mut scene = Scene::open_with(&self.spec(folder), options).map_err(said)?;
         for light in &self.light {
             scene.add_light_spec(&LightSpec::parse(light)?).map_err(said)?;
         }

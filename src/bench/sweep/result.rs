@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +11,7 @@ use serde_json::Value;
 use super::grid::Grid;
 use super::points::{Point, PointsError};
 use crate::bench::report::{Device, Run};
-use crate::output::{AtomicFile, OutputError};
+use crate::output::{OutputError, Target};
 
 /// A grid and what of it has been measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,11 +152,13 @@ impl Sweep {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        AtomicFile::write_whole(path, |file| -> std::io::Result<()> {
-            serde_json::to_writer_pretty(&mut *file, self)?;
-            writeln!(file)
-        })
+    pub fn write(&self, target: impl Into<Target>) -> Result<(), OutputError> {
+        let target = target.into();
+        let unwritable =
+            |error: serde_json::Error| OutputError::Write { path: target.path().to_owned(), reason: error.to_string() };
+        let mut text = serde_json::to_string_pretty(self).map_err(unwritable)?;
+        text.push('\n');
+        target.write(text.as_bytes())
     }
 
     /// Goes on with the points that an earlier result at `path` has of this sweep's grid. Its failures are forgotten.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::*;
-use crate::output::atomic_file::tests::TestFolder;
+use crate::output::target::tests::TestFolder;
 
 #[test]
 fn only_what_is_missing_is_made() {
@@ -97,10 +97,10 @@ fn who_reads_while_others_write_finds_a_whole_file() {
     let cache = Cache::at(&folder.0);
     let maker = Maker::of(&request([5, 3]));
     let files = [16, 48].map(|spp| maker.make(spp, None));
-    cache.write(&files[0]).expect("written");
+    cache.keep(&files[0]).expect("written");
     std::thread::scope(|scope| {
         for file in &files {
-            scope.spawn(|| (0..20).for_each(|_| drop(cache.write(file).expect("written"))));
+            scope.spawn(|| (0..20).for_each(|_| drop(cache.keep(file).expect("written"))));
         }
         for _ in 0..20 {
             let path = cache.find(&maker.about.key).expect("always there");
@@ -108,5 +108,36 @@ fn who_reads_while_others_write_finds_a_whole_file() {
             assert!(files.iter().any(|file| file.state == read.state));
         }
     });
-    assert_eq!(folder.names().len(), 1);
+    assert_eq!(cache.list().len(), 1);
+    assert_eq!(folder.names().iter().filter(|name| *name != ".lock").count(), 1, "nothing is left over");
+}
+
+/// Names the cache that a second process of the test below writes to.
+const SECOND_PROCESS: &str = "IRRADIA_TEST_SECOND_PROCESS";
+
+#[test]
+fn of_two_processes_the_one_with_more_samples_has_its_way() {
+    let maker = Maker::of(&request([5, 3]));
+    let keep_up_to = |cache: &Cache, most: u32| {
+        for spp in (16..=most).step_by(16) {
+            cache.keep(&maker.make(spp, None)).expect("kept");
+            let found = cache.read(&maker.about.key).expect("cached").spp();
+            assert!(found >= spp, "{spp} samples were kept, {found} are there");
+        }
+    };
+    if let Some(folder) = std::env::var_os(SECOND_PROCESS) {
+        // It goes on when the first one is done.
+        return (0..4).for_each(|_| keep_up_to(&Cache::at(&folder), 256));
+    }
+    let folder = TestFolder::new("reference-two-processes");
+    let cache = Cache::at(&folder.0);
+    let name = "reference::tests::cache::of_two_processes_the_one_with_more_samples_has_its_way";
+    let mut second = std::process::Command::new(std::env::current_exe().expect("this test"))
+        .args(["--exact", name, "--nocapture"])
+        .env(SECOND_PROCESS, &folder.0)
+        .spawn()
+        .expect("this test starts again");
+    keep_up_to(&cache, 320);
+    assert!(second.wait().expect("it runs").success());
+    assert_eq!(cache.read(&maker.about.key).expect("cached").spp(), 320);
 }

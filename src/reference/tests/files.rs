@@ -1,7 +1,7 @@
 //! Files of references: what they hold comes back, and what is no longer sound is said to be so.
 
 use super::*;
-use crate::output::atomic_file::tests::TestFolder;
+use crate::output::target::tests::TestFolder;
 use crate::output::{read_attributes, read_exr};
 
 #[test]

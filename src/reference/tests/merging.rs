@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::*;
-use crate::output::atomic_file::tests::TestFolder;
+use crate::output::target::tests::TestFolder;
 
 const SPP: u32 = 16 * 21;
 

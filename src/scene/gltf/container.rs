@@ -1,11 +1,11 @@
-//! From the bytes of a file to its JSON text and its buffers: GLB chunks, data URIs, external files.
+//! From the bytes of a file to its JSON text and its buffers: GLB chunks, data URIs, other files.
 
 use super::document::{Document, get};
+use super::files::Files;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// JSON text and, in a GLB, the binary chunk.
@@ -54,21 +54,15 @@ enum Bytes<'a> {
 
 /// The bytes of the file's buffers and of images stored beside it. A buffer that cannot be had is a fault only of what uses it.
 pub(super) struct Storage<'a> {
-    base_dir: Option<PathBuf>,
+    files: Files<'a>,
     buffers: Vec<Result<Bytes<'a>, String>>,
     /// All bytes that were read, the glTF file's own included: what the file can justify allocating is measured by it.
     pub(super) total_bytes: u64,
 }
 
 impl<'a> Storage<'a> {
-    pub(super) fn read(
-        document: &Document,
-        binary: Option<&'a [u8]>,
-        base_dir: Option<&Path>,
-        file_bytes: u64,
-    ) -> Self {
-        let mut storage =
-            Storage { base_dir: base_dir.map(Path::to_owned), buffers: Vec::new(), total_bytes: file_bytes };
+    pub(super) fn read(document: &Document, binary: Option<&'a [u8]>, files: Files<'a>, file_bytes: u64) -> Self {
+        let mut storage = Storage { files, buffers: Vec::new(), total_bytes: file_bytes };
         // A file may name one external buffer a thousand times; it is read once.
         let mut known: HashMap<String, Result<Arc<[u8]>, String>> = HashMap::new();
         for index in 0..document.buffers.len() {
@@ -119,30 +113,7 @@ impl<'a> Storage<'a> {
         if let Some(data) = uri.strip_prefix("data:") {
             return decode_data_uri(data);
         }
-        let shown: String = uri.chars().take(80).collect();
-        if has_scheme(uri) {
-            return Err(format!(
-                "the uri {shown:?} is not a relative path; download the file and put it beside the glTF file"
-            ));
-        }
-        let relative =
-            percent_decode(uri).ok_or_else(|| format!("the uri {shown:?} is not valid percent-encoded UTF-8"))?;
-        let path = Path::new(&relative);
-        if path.has_root() || path.is_absolute() || relative.starts_with('\\') {
-            return Err(format!(
-                "the uri {shown:?} is an absolute path; only paths relative to the glTF file are read"
-            ));
-        }
-        let base_dir = self.base_dir.as_ref();
-        let base_dir = base_dir
-            .ok_or_else(|| format!("the uri {shown:?} names a file, but no directory to find it in was given"))?;
-        let path = base_dir.join(path);
-        // A pipe or a device could block for ever or never end.
-        let metadata = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        if !metadata.is_file() {
-            return Err(format!("cannot read {}: it is not a file", path.display()));
-        }
-        std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+        self.files.read(uri)
     }
 }
 
@@ -155,24 +126,4 @@ fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     let decoded = GeneralPurpose::new(&STANDARD, config).decode(payload.trim_end());
     decoded.map_err(|error| format!("a data URI is not valid base64 ({error})"))
-}
-
-/// Whether a uri begins with `scheme:`; "C:" counts as one too.
-fn has_scheme(uri: &str) -> bool {
-    let Some((scheme, _)) = uri.split_once(':') else {
-        return false;
-    };
-    let mut letters = scheme.chars();
-    letters.next().is_some_and(|first| first.is_ascii_alphabetic())
-        && letters.all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
-}
-
-fn percent_decode(uri: &str) -> Option<String> {
-    let mut decoded = Vec::with_capacity(uri.len());
-    let mut bytes = uri.bytes();
-    while let Some(byte) = bytes.next() {
-        let digit = |byte: Option<u8>| char::from(byte?).to_digit(16).map(|digit| digit as u8);
-        decoded.push(if byte == b'%' { digit(bytes.next())? * 16 + digit(bytes.next())? } else { byte });
-    }
-    String::from_utf8(decoded).ok().filter(|path| !path.contains('\0'))
 }

@@ -2,18 +2,11 @@
 
 use super::document::{self, get};
 use super::loader::Loader;
-use super::pixels;
-use crate::scene::{Texture, TextureId, Wrap};
+use super::pixels::{self, Claim};
+use crate::scene::{LoadOptions, Texture, TextureId, Wrap};
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Longest side of an image in texels.
-const LARGEST_SIDE: u32 = 16_384;
-/// Bytes of all decoded textures of a scene.
-const LARGEST_TOTAL: u64 = 4 << 30;
-/// Texels that a byte of an image file can stand for: deflate reaches 1032 to 1, and a byte of a PNG holds up to 8 texels.
-const TEXELS_PER_BYTE: u64 = 8 * 1032;
 
 /// Where an image's bytes are.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -126,16 +119,29 @@ impl<'a> Loader<'a> {
             }
         };
         // The header alone is read first: what it claims decides whether anything is allocated.
-        let [width, height] = pixels::claimed_size(bytes)?;
+        let Claim { size: [width, height], least_bytes } = pixels::claim(bytes)?;
         let texels = u64::from(width) * u64::from(height);
-        if width.max(height) > LARGEST_SIDE || texels > TEXELS_PER_BYTE.saturating_mul(bytes.len() as u64) {
-            return Err(format!("its {} bytes claim {width}×{height} texels, which cannot be", bytes.len()));
+        let LoadOptions { image_side, texture_bytes, .. } = *self.options;
+        if least_bytes > bytes.len() as u64 {
+            let held = bytes.len();
+            return Err(format!(
+                "its {held} bytes claim {width}×{height} texels, which take {least_bytes} at the least; export it again"
+            ));
         }
-        let claimed = texels * 4 * copies;
-        if total.fetch_add(claimed, Ordering::Relaxed).saturating_add(claimed) > LARGEST_TOTAL {
-            return Err(format!("the scene's textures need more than {} GiB; make them smaller", LARGEST_TOTAL >> 30));
+        if width.max(height) > image_side {
+            return Err(format!(
+                "it has {width}×{height} texels, more than {image_side} a side (LoadOptions::image_side); make it smaller"
+            ));
         }
-        let rgba8 = pixels::decode(bytes, usize::try_from(LARGEST_TOTAL).unwrap_or(usize::MAX))?;
+        let claimed = texels.saturating_mul(4).saturating_mul(copies);
+        if total.fetch_add(claimed, Ordering::Relaxed).saturating_add(claimed) > texture_bytes {
+            return Err(format!(
+                "the scene's textures need more than {} MiB; make them smaller, or allow more by --max-texture-mib \
+                 (LoadOptions::texture_bytes)",
+                texture_bytes >> 20
+            ));
+        }
+        let rgba8 = pixels::decode(bytes)?;
         if rgba8.len() as u64 != texels * 4 {
             return Err(format!("it does not hold the {width}×{height} texels that it claims"));
         }

@@ -3,12 +3,14 @@
 use super::accessor::Accessors;
 use super::container::Storage;
 use super::document::Document;
+use crate::scene::load_options::LoadOptions;
 use crate::scene::world::Scene;
 
 /// A scene on its way from the document. Faults are sentences without the scene's name, which `Scene::from_bytes` adds.
 pub(super) struct Loader<'a> {
     pub(super) document: &'a Document,
     pub(super) storage: &'a Storage<'a>,
+    pub(super) options: &'a LoadOptions,
     pub(super) accessors: Accessors<'a>,
     pub(super) scene: Scene,
 }

@@ -8,6 +8,7 @@
 mod accessor;
 mod container;
 mod document;
+mod files;
 mod images;
 mod loader;
 mod materials;
@@ -15,10 +16,11 @@ mod nodes;
 mod pixels;
 mod primitives;
 
-use super::{Scene, SceneError};
+use super::{LoadOptions, Scene, SceneError};
 use accessor::Accessors;
 use container::Storage;
 use document::Document;
+use files::{Files, read_main};
 use loader::Loader;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -37,14 +39,22 @@ const SUPPORTED_EXTENSIONS: [&str; 9] = [
 ];
 
 impl Scene {
-    /// Loads a .gltf or .glb file.
+    /// Loads a .gltf or .glb file, with the default [`LoadOptions`].
     ///
     /// # Errors
     /// [`SceneError::Read`], [`SceneError::Malformed`], [`SceneError::RequiredExtensions`].
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        let bytes = std::fs::read(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+        Scene::load_with(path, &LoadOptions::default())
+    }
+
+    /// Loads a .gltf or .glb file.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load`].
+    pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
+        let bytes = read_main(path, options).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-        Scene::from_bytes(&name, &bytes, Some(path.parent().unwrap_or(Path::new(""))))
+        Scene::from_bytes_with(&name, &bytes, Some(path.parent().unwrap_or(Path::new(""))), options)
     }
 
     /// Reads the bytes of a .gltf or .glb file. Files that it refers to are looked for in `base_dir`; without one, they are errors.
@@ -52,6 +62,19 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Malformed`], [`SceneError::RequiredExtensions`].
     pub fn from_bytes(name: &str, bytes: &[u8], base_dir: Option<&Path>) -> Result<Scene, SceneError> {
+        Scene::from_bytes_with(name, bytes, base_dir, &LoadOptions::default())
+    }
+
+    /// As [`Scene::from_bytes`], with options.
+    ///
+    /// # Errors
+    /// Those of [`Scene::from_bytes`].
+    pub fn from_bytes_with(
+        name: &str,
+        bytes: &[u8],
+        base_dir: Option<&Path>,
+        options: &LoadOptions,
+    ) -> Result<Scene, SceneError> {
         let malformed = |fault: String| SceneError::Malformed { scene: name.to_owned(), fault };
         let (json, binary) = container::split(bytes).map_err(malformed)?;
         let document: Document =
@@ -66,11 +89,13 @@ impl Scene {
         if !required.is_empty() {
             return Err(SceneError::RequiredExtensions { scene: name.to_owned(), extensions: required.join(", ") });
         }
-        let storage = Storage::read(&document, binary, base_dir, bytes.len() as u64);
+        let files = Files::new(base_dir, options, bytes.len() as u64);
+        let storage = Storage::read(&document, binary, files, bytes.len() as u64);
         let mut loader = Loader {
             accessors: Accessors::new(&document, &storage),
             document: &document,
             storage: &storage,
+            options,
             scene: Scene::empty(name),
         };
         loader.scene.description = document.asset.extras["description"].as_str().map(str::to_owned);

@@ -14,27 +14,44 @@ enum Format {
     Jpeg,
 }
 
-/// Width and height, as the header claims.
-pub(super) fn claimed_size(file: &[u8]) -> Result<[u32; 2], String> {
+/// What deflate reaches at the most: a match of 258 bytes in two bits.
+const DEFLATE_RATIO: u64 = 1032;
+
+/// Texels that a bit of a JPEG can stand for: a block of 8×8 takes one at the least.
+const JPEG_TEXELS_PER_BIT: u64 = 64;
+
+/// What a file's header says, and how many bytes a file of its format has at the least that holds so much.
+pub(super) struct Claim {
+    pub(super) size: [u32; 2],
+    pub(super) least_bytes: u64,
+}
+
+pub(super) fn claim(file: &[u8]) -> Result<Claim, String> {
     match format(file)? {
         Format::Png => {
-            let mut decoder = png_decoder(file, usize::MAX);
+            let mut decoder = png_decoder(file);
             let header = decoder.read_header_info().map_err(undecodable)?;
-            Ok([header.width, header.height])
+            let bits = header.bits_per_pixel() as u64;
+            // Every row begins with a byte for its filter.
+            let row_bytes = 1 + (u64::from(header.width) * bits).div_ceil(8);
+            let least_bytes = row_bytes * u64::from(header.height) / DEFLATE_RATIO;
+            Ok(Claim { size: [header.width, header.height], least_bytes })
         }
         Format::Jpeg => {
             let mut decoder = jpeg_decoder(file, ColorSpace::RGB);
             decoder.decode_headers().map_err(undecodable)?;
             let info = decoder.info().ok_or("it has no header")?;
-            Ok([info.width.into(), info.height.into()])
+            let size: [u32; 2] = [info.width.into(), info.height.into()];
+            let least_bytes = u64::from(size[0]) * u64::from(size[1]) / (8 * JPEG_TEXELS_PER_BIT);
+            Ok(Claim { size, least_bytes })
         }
     }
 }
 
-/// The pixels of a file, for which no more than `bytes` may be allocated.
-pub(super) fn decode(file: &[u8], bytes: usize) -> Result<Vec<u8>, String> {
+/// The pixels of a file whose claim is sound.
+pub(super) fn decode(file: &[u8]) -> Result<Vec<u8>, String> {
     match format(file)? {
-        Format::Png => decode_png(file, bytes),
+        Format::Png => decode_png(file),
         Format::Jpeg => decode_jpeg(file),
     }
 }
@@ -51,15 +68,18 @@ fn undecodable(error: impl Display) -> String {
     format!("it cannot be decoded ({error})")
 }
 
-fn png_decoder(file: &[u8], bytes: usize) -> png::Decoder<Cursor<&[u8]>> {
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(file), png::Limits { bytes });
+fn png_decoder(file: &[u8]) -> png::Decoder<Cursor<&[u8]>> {
+    // The limits of the decoder itself are for what comes beside the pixels, of which nothing is used.
+    let mut decoder = png::Decoder::new(Cursor::new(file));
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
     // Palettes and fewer than eight bits become eight; sixteen are rounded below, not cut.
     decoder.set_transformations(png::Transformations::EXPAND);
     decoder
 }
 
-fn decode_png(file: &[u8], bytes: usize) -> Result<Vec<u8>, String> {
-    let mut reader = png_decoder(file, bytes).read_info().map_err(undecodable)?;
+fn decode_png(file: &[u8]) -> Result<Vec<u8>, String> {
+    let mut reader = png_decoder(file).read_info().map_err(undecodable)?;
     let size = reader.output_buffer_size().ok_or("it is too large")?;
     let mut data = vec![0; size];
     let frame = reader.next_frame(&mut data).map_err(undecodable)?;
