@@ -6,6 +6,7 @@
 
 mod copy;
 mod crash_markers;
+mod descriptor_counts;
 mod descriptors;
 mod device;
 mod draw;
