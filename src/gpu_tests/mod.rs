@@ -59,6 +59,7 @@ mod splat_bench;
 mod sppm;
 mod tonemap;
 mod traced_direct;
+mod traits;
 mod vpl_paths;
 mod vpl_regions;
 mod vpl_samples;

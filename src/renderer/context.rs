@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use crate::method::Error;
+#[cfg(test)]
+use crate::vulkan::DeviceTraits;
 use crate::vulkan::{self, ContextOptions, Device, DeviceReport, Pipelines};
 
 /// A Vulkan device, and the pipelines that renderers had it compile. Cloning shares both; they are destroyed with the last renderer on it.
@@ -19,9 +21,21 @@ impl Context {
     /// A sentence that says what to install, when there is no loader, no device or no validation layer; which devices
     /// there are, when none matches; what the device lacks and what needs it, when it cannot be used.
     pub fn new(options: &ContextOptions) -> Result<Context, Error> {
-        let device = Device::new(options)?;
+        Ok(Context::on(Device::new(options)?))
+    }
+
+    /// On a device that is taken for one of other traits.
+    #[cfg(test)]
+    pub(crate) fn with_traits(
+        options: &ContextOptions,
+        traits: impl FnOnce(DeviceTraits) -> DeviceTraits,
+    ) -> Result<Context, Error> {
+        Ok(Context::on(Device::with_traits(options, traits)?))
+    }
+
+    fn on(device: Arc<Device>) -> Context {
         let pipelines = Pipelines::new(&device);
-        Ok(Context { device, pipelines })
+        Context { device, pipelines }
     }
 
     /// All devices of this machine, usable or not.

@@ -15,6 +15,7 @@ use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
 use super::report::{self, DeviceReport, Survey};
+use super::traits::DeviceTraits;
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default)]
@@ -44,8 +45,17 @@ pub(crate) struct Device {
 
 impl Device {
     pub(crate) fn new(options: &ContextOptions) -> Result<Arc<Device>, VulkanError> {
+        Device::with_traits(options, |known| known)
+    }
+
+    /// With traits made of those that the driver is known for.
+    pub(crate) fn with_traits(
+        options: &ContextOptions,
+        traits: impl FnOnce(DeviceTraits) -> DeviceTraits,
+    ) -> Result<Arc<Device>, VulkanError> {
         let instance = Instance::new(options.validation)?;
-        let (physical, survey) = choose(&instance, options.device.as_deref())?;
+        let (physical, mut survey) = choose(&instance, options.device.as_deref())?;
+        survey.traits = traits(survey.traits);
         let priorities = [1.0];
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
@@ -154,8 +164,8 @@ impl Device {
         }
     }
 
-    pub(crate) fn is_cpu(&self) -> bool {
-        self.survey.properties.device_type == vk::PhysicalDeviceType::CPU
+    pub(crate) fn traits(&self) -> DeviceTraits {
+        self.survey.traits
     }
 
     pub(crate) fn limits(&self) -> &vk::PhysicalDeviceLimits {

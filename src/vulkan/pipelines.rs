@@ -77,6 +77,18 @@ pub(crate) struct TargetFormats {
     pub(crate) stencil: vk::Format,
 }
 
+impl TargetFormats {
+    fn has_depth(&self) -> bool {
+        [self.depth, self.stencil].iter().any(|format| *format != vk::Format::UNDEFINED)
+    }
+}
+
+fn no_depth(device: &str) -> VulkanError {
+    let reason =
+        "its driver draws nothing with a depth buffer at this vector width (LP_NATIVE_VECTOR_WIDTH)".to_owned();
+    VulkanError::Unfit { device: device.to_owned(), reason }
+}
+
 /// A pipeline and what binding to it needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pipeline {
@@ -154,6 +166,10 @@ impl Pipelines {
             return Ok(*pipeline);
         }
         let start = Instant::now();
+        let with_depth = |(_, targets): &(RasterState, TargetFormats)| targets.has_depth();
+        if !self.device.traits().draws_with_depth && key.raster.as_ref().is_some_and(with_depth) {
+            return Err(no_depth(&self.device.report().name));
+        }
         let layouts = self.layouts(program)?;
         let raw = self.create(program, constants, layouts.pipeline, key.raster.as_ref())?;
         self.device.set_name(raw, program.name);
@@ -368,7 +384,7 @@ impl Pipelines {
         let anisotropic = texture
             && filter == vk::Filter::LINEAR
             && self.device.survey.features.sampler_anisotropy == vk::TRUE
-            && !self.device.is_cpu();
+            && !self.device.traits().software;
         let mode =
             if filter == vk::Filter::NEAREST { vk::SamplerMipmapMode::NEAREST } else { vk::SamplerMipmapMode::LINEAR };
         let info = vk::SamplerCreateInfo::default()
@@ -423,16 +439,4 @@ pub(crate) fn pipeline_stages(program: &Program) -> vk::PipelineStageFlags2 {
                 StageKind::Compute => vk::PipelineStageFlags2::COMPUTE_SHADER,
             }
     })
-}
-
-/// Descriptor pool sizes for `sets` sets of ordinary passes.
-pub(crate) fn pool_sizes(sets: u32) -> [vk::DescriptorPoolSize; 5] {
-    let kinds = [
-        (BindingKind::SampledImage(ImageDim::D2), 8),
-        (BindingKind::StorageImage(ImageDim::D2), 6),
-        (BindingKind::TexelBuffer, 4),
-        (BindingKind::Uniform, 4),
-        (BindingKind::Storage, 8),
-    ];
-    kinds.map(|(kind, each)| vk::DescriptorPoolSize { ty: kind.descriptor_type(), descriptor_count: sets * each })
 }

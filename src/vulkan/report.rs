@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::error::VulkanError;
 use super::instance::{Instance, Validation, version_text};
+use super::traits::DeviceTraits;
 
 /// One device as `irradia devices` lists it.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -44,6 +45,7 @@ pub(crate) struct Survey {
     pub(crate) features: vk::PhysicalDeviceFeatures,
     pub(crate) queue_family: u32,
     pub(crate) timestamp_bits: u32,
+    pub(crate) traits: DeviceTraits,
 }
 
 impl Survey {
@@ -100,6 +102,7 @@ impl Survey {
             features,
             queue_family: family.and_then(|family| u32::try_from(family).ok()).unwrap_or(0),
             timestamp_bits,
+            traits: DeviceTraits::of(properties.device_type, vulkan12.driver_id, vulkan11.subgroup_size),
         }
     }
 }

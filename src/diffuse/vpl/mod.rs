@@ -88,7 +88,7 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
         _ if level_count == 1 || regions::flattened_size(buffer.size)[0] > cx.graph.longest_side() => {
             VplShading::Pixels
         }
-        VplShading::Auto if cx.graph.runs_on_cpu() => VplShading::Compute,
+        VplShading::Auto if cx.graph.traits().software => VplShading::Compute,
         VplShading::Auto => VplShading::Stencil,
         chosen => chosen,
     };
