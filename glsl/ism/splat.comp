@@ -95,9 +95,6 @@ void draw_texel(uint first, ivec2 texel, vec3 toward, vec3 plane, float distance
 
 // By all invocations of the subgroup: of each one's disc that is `large` every texel, by turns.
 void draw_in_step(uint first, Disc disc, bool large, float radius) {
-    uvec4 present = subgroupBallot(true);
-    int rank = int(subgroupBallotExclusiveBitCount(present));
-    int count = int(subgroupBallotBitCount(present));
     uvec4 waiting = subgroupBallot(large);
     while (subgroupBallotBitCount(waiting) > 0u) {
         uint lane = subgroupBallotFindLSB(waiting);
@@ -109,7 +106,7 @@ void draw_in_step(uint first, Disc disc, bool large, float radius) {
         float least_cosine = subgroupShuffle(disc.least_cosine, lane);
         ivec2 low = ivec2(subgroupShuffle(disc.low.x, lane), subgroupShuffle(disc.low.y, lane));
         ivec2 size = ivec2(subgroupShuffle(disc.size.x, lane), subgroupShuffle(disc.size.y, lane));
-        for (int index = rank; index < size.x * size.y; index += count) {
+        for (int index = int(gl_SubgroupInvocationID); index < size.x * size.y; index += int(gl_SubgroupSize)) {
             draw_texel(first, low + ivec2(index % size.x, index / size.x), toward, plane, distance, least_cosine, radius);
         }
     }

@@ -84,11 +84,10 @@ Ellipse footprint(Landing landing) {
     float share = lobe_in_disc(unpackHalf2x16(landing.photon.bits >> 16).x);
     float drawn = landing.spread * (1.0 - share) * inversesqrt(emitted);
     Ellipse ellipse = ellipse_of(landing.beam, landing.normal, push.disc_scale, landing.spread * share, drawn);
-    if (!is_finite(ellipse.larger) || !is_finite(ellipse.smaller)) {
-        return Ellipse(most, vec4(0.0, 0.0, 0.0, most));
-    }
-    ellipse.larger = clamp(ellipse.larger, least, most);
-    ellipse.smaller.w = clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger);
+    bool is_number = is_finite(ellipse.larger) && is_finite(ellipse.smaller);
+    ellipse.larger = is_number ? clamp(ellipse.larger, least, most) : most;
+    ellipse.smaller.xyz = is_number ? ellipse.smaller.xyz : vec3(0.0);
+    ellipse.smaller.w = is_number ? clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger) : ellipse.larger;
     return ellipse;
 }
 

@@ -25,6 +25,7 @@ mod kept;
 mod layouts;
 mod leaks;
 mod light_share;
+mod limits;
 mod lists;
 mod memory;
 mod numbers;

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::limits::lacks_by_method;
 use crate::method::Error;
 #[cfg(test)]
 use crate::vulkan::DeviceTraits;
-use crate::vulkan::{self, ContextOptions, Device, DeviceReport, Pipelines};
+use crate::vulkan::{self, ContextOptions, Device, DeviceReport, Pipelines, Survey};
 
 /// A Vulkan device, and the pipelines that renderers had it compile. Cloning shares both; they are destroyed with the last renderer on it.
 #[derive(Clone)]
@@ -43,12 +44,12 @@ impl Context {
     /// # Errors
     /// Without a Vulkan loader.
     pub fn devices() -> Result<Vec<DeviceReport>, Error> {
-        Ok(vulkan::devices()?)
+        Ok(vulkan::devices()?.iter().map(report_of).collect())
     }
 
     /// The device in use.
     pub fn device(&self) -> DeviceReport {
-        self.device.report().clone()
+        report_of(&self.device.survey)
     }
 
     /// What the validation layer found so far: warnings and worse. Always empty without validation.
@@ -68,6 +69,12 @@ impl Context {
     pub(crate) fn shared_device(&self) -> &Arc<Device> {
         &self.device
     }
+}
+
+/// What is known of a device, and which methods it cannot run.
+fn report_of(survey: &Survey) -> DeviceReport {
+    let lacks = lacks_by_method(&survey.offer, survey.traits.software);
+    DeviceReport { lacks, ..survey.report.clone() }
 }
 
 impl std::fmt::Debug for Context {

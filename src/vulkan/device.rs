@@ -14,6 +14,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
+use super::limits::Offer;
 use super::report::{self, DeviceReport, Survey};
 use super::traits::DeviceTraits;
 
@@ -162,6 +163,10 @@ impl Device {
             Err(vk::Result::ERROR_FORMAT_NOT_SUPPORTED) => Ok(false),
             found => found.called("vkGetPhysicalDeviceImageFormatProperties").map(|_| true),
         }
+    }
+
+    pub(crate) fn offer(&self) -> &Offer {
+        &self.survey.offer
     }
 
     pub(crate) fn traits(&self) -> DeviceTraits {

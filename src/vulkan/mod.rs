@@ -12,6 +12,7 @@ mod device;
 mod draw;
 mod error;
 mod instance;
+pub(crate) mod limits;
 #[cfg(debug_assertions)]
 mod live_shaders;
 mod memory;
@@ -40,6 +41,6 @@ pub(crate) use pipelines::{
 pub(crate) use queries::Queries;
 pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
-pub(crate) use report::devices;
+pub(crate) use report::{Survey, devices};
 pub(crate) use traits::DeviceTraits;
 pub(crate) use transfer::{buffer_with, image_with};
