@@ -173,6 +173,15 @@ impl Device {
         self.survey.traits
     }
 
+    /// Before a draw, or a blit, which drivers draw.
+    pub(crate) fn check_draws(&self) -> Result<(), VulkanError> {
+        if self.traits().draws {
+            return Ok(());
+        }
+        let reason = "its driver draws nothing with vectors of this width (LP_NATIVE_VECTOR_WIDTH)".to_owned();
+        Err(VulkanError::Unfit { device: self.report().name.clone(), reason })
+    }
+
     pub(crate) fn limits(&self) -> &vk::PhysicalDeviceLimits {
         &self.survey.properties.limits
     }

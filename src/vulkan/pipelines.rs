@@ -77,18 +77,6 @@ pub(crate) struct TargetFormats {
     pub(crate) stencil: vk::Format,
 }
 
-impl TargetFormats {
-    fn has_depth(&self) -> bool {
-        [self.depth, self.stencil].iter().any(|format| *format != vk::Format::UNDEFINED)
-    }
-}
-
-fn no_depth(device: &str) -> VulkanError {
-    let reason =
-        "its driver draws nothing with a depth buffer at this vector width (LP_NATIVE_VECTOR_WIDTH)".to_owned();
-    VulkanError::Unfit { device: device.to_owned(), reason }
-}
-
 /// A pipeline and what binding to it needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pipeline {
@@ -166,9 +154,8 @@ impl Pipelines {
             return Ok(*pipeline);
         }
         let start = Instant::now();
-        let with_depth = |(_, targets): &(RasterState, TargetFormats)| targets.has_depth();
-        if !self.device.traits().draws_with_depth && key.raster.as_ref().is_some_and(with_depth) {
-            return Err(no_depth(&self.device.report().name));
+        if key.raster.is_some() {
+            self.device.check_draws()?;
         }
         let layouts = self.layouts(program)?;
         let raw = self.create(program, constants, layouts.pipeline, key.raster.as_ref())?;

@@ -75,7 +75,7 @@ impl Survey {
             // SAFETY: as above.
             let found = unsafe { raw.get_physical_device_format_properties(device, format) };
             let mut images = found.optimal_tiling_features;
-            if !traits.draws_with_depth {
+            if !traits.draws {
                 images &= !vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
             }
             (format, images)

@@ -39,6 +39,9 @@ pub(crate) fn image_with(
     layers: &[&[u8]],
 ) -> Result<Arc<Image>, VulkanError> {
     use vk::ImageLayout as Layout;
+    if info.mips > 1 {
+        device.check_draws()?;
+    }
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
     let image = Image::new(device, name, info, usage, vk::ImageCreateFlags::empty())?;
     let relayout = |mips: std::ops::Range<u32>, old_layout, new_layout| Barriers {
