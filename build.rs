@@ -18,6 +18,8 @@ mod groups;
 pub(crate) mod limits;
 #[path = "build/live.rs"]
 mod live;
+#[path = "build/needs.rs"]
+mod needs;
 #[path = "build/reflect.rs"]
 pub(crate) mod reflect;
 #[path = "build/words.rs"]
@@ -116,7 +118,8 @@ fn programs(
         if program.summary.is_empty() || stage_kind == ShaderKind::Fragment {
             program.summary = summary(&source).unwrap_or_else(|| format!("`glsl/{piece}/{pass}`."));
         }
-        program.stages.push(CompiledStage { kind, spirv_file, spirv, stage });
+        let needs = needs::needs(&words).map_err(in_file)?;
+        program.stages.push(CompiledStage { kind, spirv_file, spirv, stage, needs });
     }
     let mut programs: Vec<Program> = programs.into_values().collect();
     for program in &mut programs {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::groups::Group;
+use super::needs::StageNeeds;
 use super::reflect::{Binding, BindingKind, Constant, ImageDim, OWN_PUSH, Stage, Struct, Type, size_of};
 
 /// A stage of a program, its SPIR-V, and the file in `OUT_DIR` that holds it.
@@ -13,6 +14,7 @@ pub(crate) struct CompiledStage {
     pub(crate) spirv_file: String,
     pub(crate) spirv: Vec<u8>,
     pub(crate) stage: Stage,
+    pub(crate) needs: StageNeeds,
 }
 
 /// All stages of one program, merged.
@@ -52,6 +54,9 @@ pub(crate) fn generate(programs: &[Program], groups: &[Group]) -> Result<String,
     }
     out.push_str("}\n");
     write_groups(&mut out, groups);
+    let all: Vec<String> =
+        programs.iter().map(|it| format!("&{}::{}", it.piece, screaming(&camel(&it.pass)))).collect();
+    writeln!(out, "/// All programs, in the order of their names.\npub(crate) static PROGRAMS: &[&crate::vulkan::program::Program] = &[{}];", all.join(", ")).ok();
     let mut pieces: BTreeMap<&str, Vec<&Program>> = BTreeMap::new();
     for program in programs {
         pieces.entry(&program.piece).or_default().push(program);
@@ -200,7 +205,7 @@ fn write_table(
 ) {
     writeln!(
         out,
-        "static {}: vp::Program = vp::Program {{ name: \"{}/{}\", stages: &[",
+        "pub(super) static {}: vp::Program = vp::Program {{ name: \"{}/{}\", stages: &[",
         screaming(name),
         program.piece,
         program.pass
@@ -209,8 +214,9 @@ fn write_table(
     for stage in &program.stages {
         writeln!(
             out,
-            "vp::Stage {{ kind: vp::StageKind::{}, spirv: vp::Spirv(include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{}\"))) }},",
+            "vp::Stage {{ kind: vp::StageKind::{}, needs: {}, spirv: vp::Spirv(include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{}\"))) }},",
             stage.kind,
+            stage_needs(stage),
             stage.spirv_file
         )
         .ok();
@@ -234,6 +240,22 @@ fn write_table(
     let constants: Vec<String> = constants.iter().map(|constant| constant.id.to_string()).collect();
     writeln!(out, "], push_size: {push_size}, constants: &[{}], local_size: {local_size:?} }};", constants.join(", "))
         .ok();
+}
+
+fn stage_needs(stage: &CompiledStage) -> String {
+    let count =
+        |counts: fn(&BindingKind) -> bool| stage.stage.bindings.iter().filter(|binding| counts(&binding.kind)).count();
+    format!(
+        "vp::StageNeeds {{ sampled_images: {}, samplers: {}, storage_images: {}, uniform_buffers: {}, storage_buffers: {}, \
+         shared_bytes: {}, subgroup_operations: {} }}",
+        count(|kind| matches!(kind, BindingKind::SampledImage(_) | BindingKind::TexelBuffer)),
+        count(|kind| matches!(kind, BindingKind::SampledImage(_))),
+        count(|kind| matches!(kind, BindingKind::StorageImage { .. })),
+        count(|kind| matches!(kind, BindingKind::Uniform(_))),
+        count(|kind| matches!(kind, BindingKind::Storage { .. })),
+        stage.needs.shared_bytes,
+        stage.needs.subgroup_operations,
+    )
 }
 
 /// What the struct of a program holds.

@@ -103,8 +103,10 @@ bool scatter(uint path) {
     // The factor trades rays against noise: 2 is the best of 1, 2 and 4 in the Cornell boxes; for light paths, the first vertex of
     // which is worth most and always goes on, 1/4 of 1/8 to 1 in `ring`. The bound ends even what scatters without loss.
     float eagerness = sent ? (push.depth == 0u ? 1e9 : 0.25) : 2.0;
-    float survival = min(eagerness * carried / max(before, 1e-37), push.depth < 8u ? 1.0 : 0.95);
-    if (!(survival > 0.0) || random.w >= survival) {
+    float most = push.depth < 8u ? 1.0 : 0.95;
+    // What is no number goes on: it is counted where it would be added (path/resolve.comp, particle/splat.comp).
+    float survival = is_finite(throughput) ? min(eagerness * carried / max(before, 1e-37), most) : most;
+    if (random.w >= survival) {
         return false;
     }
     float ratio = LIGHT_PATHS != 0u ? ratio_after(vertex, drawn, viewer, arrival.w) : 0.0;

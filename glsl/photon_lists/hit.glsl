@@ -5,6 +5,7 @@
 #ifndef PHOTON_LISTS_HIT
 #define PHOTON_LISTS_HIT
 
+#include "lib/finite.glsl"
 #include "photon_lists/node.glsl"
 #include "photon_lists/view.glsl"
 #include "photons/records.glsl"
@@ -68,11 +69,12 @@ float distance_to_node(uvec4 node, ListView view, Column column, vec2 center, fl
     float facing = dot(normal, ray.direction);
     float distance = height / facing;
     vec3 at = along.start + distance * along.step;
-    vec2 off = abs(at.xy / at.z - center);
+    // Magnitudes as bits, which order as the values do; those of what is no number are beyond any width. A ray in the node's plane meets it nowhere.
+    uvec2 off = floatBitsToUint(at.xy / at.z - center) & 0x7FFFFFFFu;
     float texel = view.texel * at.z;
     bool from_behind = facing > 0.0 && (ray.bits & PHOTON_INSIDE) == 0u;
     bool is_start = distance < START_TEXELS * texel && (from_behind || abs(height) < START_HEIGHT * texel);
-    bool in_column = max(off.x, off.y) < width && at.z > 0.0;
+    bool in_column = max(off.x, off.y) < floatBitsToUint(width) && at.z > 0.0;
     return distance > 0.0 && in_column && !is_start ? distance : NO_HIT_DISTANCE;
 }
 

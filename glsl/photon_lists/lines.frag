@@ -25,14 +25,16 @@ void main() {
         float t = speed.x > speed.y ? crossing.x : crossing.y;
         float reach = 2.0 * LINE_COLUMN * (along.start.z + t * along.step.z) / max(speed.x, speed.y);
         vec2 depths = along.depth + vec2(t - reach, t + reach) * along.depth_step;
-        float known = uintBitsToFloat(hits[4u * ray_index]);
+        uint known = hits[4u * ray_index];
+        // A ray along the column is in it all the way: neither time nor depth tells it from the list.
+        bool passes = is_finite(depths) && is_finite(t - reach);
         bool beyond = min(depths.x, depths.y) > uintBitsToFloat(~list.z) || max(depths.x, depths.y) < uintBitsToFloat(list.y);
-        // `known` is a NaN as long as nothing was hit: no comparison holds then.
-        if (!beyond && !(t - reach > known)) {
+        bool behind = known != HIT_NONE && t - reach > uintBitsToFloat(known);
+        if (!passes || (!beyond && !behind)) {
             Column column = column_of(view, center);
             float nearest = NO_HIT_DISTANCE;
             uint index = list.x;
-            while (index != NO_NODE) {
+            FOR_NODES_OF_LIST(index) {
                 uvec4 node = texelFetch(list_nodes, int(index));
                 nearest = min(nearest, distance_to_node(node, view, column, center, LINE_COLUMN, along, ray));
                 index = node.z;

@@ -22,7 +22,11 @@ void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) 
     ListView view = load_list_view(list_views, view_index);
     ViewRay along = view_ray(view, ray);
     vec3 at = along.start + found * along.step;
-    ivec2 first = ivec2(floor(clamp(at.xy / at.z, -2.0, float(push.resolution) + 2.0) - 0.5));
+    vec2 texel = at.xy / at.z;
+    if (!is_finite(texel)) {
+        return;
+    }
+    ivec2 first = ivec2(floor(clamp(texel, -2.0, float(push.resolution) + 2.0) - 0.5));
     // Columns reach a texel beyond their centres.
     for (uint place = 0u; place < 4u; ++place) {
         ivec2 cell = first + ivec2(place & 1u, place >> 1);
@@ -33,7 +37,7 @@ void search(uint view_index, PhotonRay ray, float found, inout NodeHit closest) 
         }
         vec2 center = vec2(cell) + 0.5;
         Column column = column_of(view, center);
-        while (index != NO_NODE) {
+        FOR_NODES_OF_LIST(index) {
             uvec4 node = texelFetch(list_nodes, int(index));
             float distance = distance_to_node(node, view, column, center, LINE_COLUMN, along, ray);
             take_nearer(closest, abs(distance - found), node);

@@ -15,7 +15,7 @@ layout(set = 0, binding = 0) uniform usamplerBuffer rays;
 layout(set = 0, binding = 1) uniform usamplerBuffer blocks;
 layout(set = 0, binding = 2) readonly buffer Counts { uint counts[]; };
 layout(set = 0, binding = 3) writeonly buffer Hits { uint hits[]; };
-layout(set = 0, binding = 4) buffer Work { uint work[]; };  // steps, misses
+layout(set = 0, binding = 4) buffer Work { uint work[]; };  // steps, misses, rays that were cut off
 
 layout(push_constant, scalar) uniform Push {
     uint resolution;
@@ -30,11 +30,12 @@ layout(push_constant, scalar) uniform Push {
 const float BEYOND = 1e-3;
 
 uint steps = 0u;
+bool cut_off = false;
 
 void meet_list(uint first, ListView view, vec2 center, ViewRay along, PhotonRay ray, inout NodeHit nearest) {
     Column column = column_of(view, center);
     uint index = first;
-    while (index != NO_NODE) {
+    FOR_NODES_OF_LIST(index) {
         uvec4 node = texelFetch(list_nodes, int(index));
         take_nearer(nearest, distance_to_node(node, view, column, center, MARCH_COLUMN, along, ray), node);
         index = node.z;
@@ -48,10 +49,17 @@ void march(uint view_index, PhotonRay ray, inout NodeHit nearest) {
     float slices_per_meter = SLICES / view.far;
     uint level = push.top;
     float t = range.x;
+    // A straight way crosses at most 2·resolution edges between texels. Each is an advance, after which the march rises by a level at most, and
+    // every other step sinks one. As many again are for edges that rounding has it meet twice.
+    uint most = steps + 8u * push.resolution + 2u * push.top;
     while (t < min(range.y, nearest.distance)) {
         ++steps;
         vec3 at = along.start + t * along.step;
         vec2 texel = at.xy / at.z;
+        if (steps > most || !is_finite(texel.x + texel.y)) {
+            cut_off = true;
+            return;
+        }
         vec2 speed = (along.step.xy - texel * along.step.z) / at.z;
         float fastest = max(max(abs(speed.x), abs(speed.y)), 1e-20);
         vec2 probe = clamp(texel + speed * (BEYOND / fastest), vec2(0.0), vec2(float(push.resolution) - 0.5));
@@ -63,7 +71,9 @@ void march(uint view_index, PhotonRay ray, inout NodeHit nearest) {
         // A ray that stands still along an axis never gets to that edge.
         crossing = mix(vec2(range.y), crossing, greaterThan(abs(speed), vec2(1e-6 * fastest)));
         bool x_first = crossing.x < crossing.y;
-        float next = min(max(min(crossing.x, crossing.y), t + BEYOND / fastest), range.y);
+        // Ahead by a number at least, where the sum rounds to `t`.
+        float ahead = max(t + BEYOND / fastest, uintBitsToFloat(floatBitsToUint(t) + 1u));
+        float next = min(max(min(crossing.x, crossing.y), ahead), range.y);
 
         // Hits in a widened column lie a little before or behind the texel.
         float slack = (MARCH_COLUMN - 0.5) / fastest;
@@ -111,8 +121,12 @@ void main() {
     }
     uint all_steps = subgroupAdd(steps);
     uint misses = subgroupAdd(uint(missed));
+    uint cuts = subgroupAdd(uint(cut_off));
     if (subgroupElect()) {
         atomicAdd(work[0], all_steps);
         atomicAdd(work[1], misses);
+        if (cuts > 0u) {
+            atomicAdd(work[2], cuts);
+        }
     }
 }

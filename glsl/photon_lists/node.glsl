@@ -11,4 +11,7 @@
 
 const uint NO_NODE = 0xFFFFFFFFu;
 
+// No list has more nodes than there are: walks along one end there, whatever the lists hold.
+#define FOR_NODES_OF_LIST(index) for (int left = textureSize(list_nodes); index != NO_NODE && left > 0; --left)
+
 #endif

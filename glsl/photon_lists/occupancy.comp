@@ -26,7 +26,7 @@ uvec4 slices_of_texel(ListView view, uint view_index, uvec2 texel) {
     uvec4 found = uvec4(0u);
     uint row = view_index * push.resolution + texel.y;
     uint index = texelFetch(list_pixels, int(row * push.resolution + texel.x)).x;
-    while (index != NO_NODE) {
+    FOR_NODES_OF_LIST(index) {
         uvec4 node = texelFetch(list_nodes, int(index));
         vec3 normal = unpack_direction(node.y);
         float depth = uintBitsToFloat(node.x);

@@ -15,8 +15,9 @@
 // At full size the slot `caustics` in W/(m²·sr) (photon_splat/answer.glsl), else E in W/m² for upsample.comp. Quyen 2014, section 3.3.2.3,
 // gathered instead of blended.
 //
-// The eight invocations of a block of 8×4 samples first test eight photons at a time, one each, against a sphere around the block's surfaces;
-// all then take those that pass, one after the other.
+// A sphere around the surfaces of a block of 8×4 samples tells which photons its eight invocations look at. Where a subgroup's invocations run in
+// step they test eight photons at a time, one each, and all then take those that pass, one after the other; else each tests all for itself. Sums
+// are integers: the same bits either way.
 
 layout(local_size_x = 64) in;
 
@@ -32,6 +33,9 @@ layout(set = 0, binding = 6) uniform samplerBuffer sorted_squeezes;
 
 // A group takes one part of the photons of a crowded tile, and adds to `sums` what resolve.comp then makes the result of.
 layout(constant_id = 0) const uint CROWDED = 0u;
+
+// Whether a subgroup's invocations run in step (src/vulkan/traits.rs).
+layout(constant_id = 1) const uint IN_STEP = 0u;
 
 layout(push_constant, scalar) uniform Push {
     ivec2 image_size;
@@ -73,7 +77,7 @@ vec4 bounding_sphere() {
 }
 
 void add_run(vec4 sphere, int first, int end, float scale) {
-    uint width = min(gl_SubgroupSize, 8u);
+    uint width = IN_STEP != 0u ? min(gl_SubgroupSize, 8u) : 1u;
     uint lane = gl_SubgroupInvocationID & (width - 1u);
     uint shift = gl_SubgroupInvocationID - lane;
     for (; first < end; first += int(width)) {
@@ -82,7 +86,7 @@ void add_run(vec4 sphere, int first, int end, float scale) {
         vec3 away = around.xyz - sphere.xyz;
         float reach = around.w + sphere.w;
         bool near = fused_dot(away, away) < reach * reach && first + int(lane) < end;
-        uint passed = subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u);
+        uint passed = IN_STEP != 0u ? subgroupBallot(near)[shift >> 5] >> (shift & 31u) & ((1u << width) - 1u) : uint(near);
         uvec3 terms[4] = { uvec3(0u), uvec3(0u), uvec3(0u), uvec3(0u) };
         while (passed != 0u) {
             int photon = first + findLSB(passed);

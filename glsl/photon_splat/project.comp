@@ -120,22 +120,23 @@ void main() {
             smaller = min(max(axis.w, least / foreshortening(to_eye, axis.xyz)), radius);
             squeeze = axis.xyz * sqrt(max(1.0 / (smaller * smaller) - 1.0 / (radius * radius), 0.0));
         }
+        bool is_dropped = !is_number(photon);
+        bool sound = !is_dropped && is_sound(photon);
         float height = allowed_height(radius, push.tolerance);
         Extent extent =
             disc_extent(camera, photon.position_rs, photon.normal, radius, height, push.image_size, push.downscale);
         vec3 irradiance = photon.flux * (kernel_peak() / (radius * smaller));
         vec2 covered = 2.0 * extent.radius + 1.0;
-        if (smaller * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
+        if (sound && smaller * cosine < FEW_SAMPLES * sample_across && covered.x * covered.y < MOST_SAMPLES) {
             irradiance /= clamp(lattice_sum(photon, radius, smaller, squeeze, extent), 0.5, 2.0);
         }
         irradiance = min(irradiance, vec3(1e30));
         float peak = max3(irradiance);
         uvec2 place = uvec2(NO_CELL, 0u);
-        bool is_dropped = !is_number(photon);
         if (is_dropped) {
             atomicAdd(state[STATE_DROPPED], 1u);
         }
-        if (!is_dropped && is_sound(photon) && peak > 0.0 && extent.radius.x > 0.0) {
+        if (sound && peak > 0.0 && extent.radius.x > 0.0) {
             float reach = max(extent.radius.x, extent.radius.y);
             int level = 0;
             while (level < push.level_count - 1 && reach > reach_of_level(level)) {

@@ -32,7 +32,8 @@ void scan_store(uint cell, uint before) {
 void scan_row(int row) {
     int level = 0;
     uvec4 cells = texelFetch(splat_levels, 0);
-    while (row >= int(cells.y)) {
+    int level_count = textureSize(splat_levels);
+    while (row >= int(cells.y) && level + 1 < level_count) {
         row -= int(cells.y);
         ++level;
         cells = texelFetch(splat_levels, level);

@@ -18,6 +18,6 @@ const uint STATE_DROPPED = 18u; // photons left out since something of them is n
 const uint LISTED_A_ROW = 32768u;
 
 // Photons of a part.
-const uint PART_PHOTONS = 32768u;
+const uint PART_PHOTONS = 32000u;
 
 #endif

@@ -84,19 +84,22 @@ Ellipse footprint(Landing landing) {
     float share = lobe_in_disc(unpackHalf2x16(landing.photon.bits >> 16).x);
     float drawn = landing.spread * (1.0 - share) * inversesqrt(emitted);
     Ellipse ellipse = ellipse_of(landing.beam, landing.normal, push.disc_scale, landing.spread * share, drawn);
-    ellipse.larger = is_finite(ellipse.larger) ? clamp(ellipse.larger, least, most) : most;
-    ellipse.smaller.xyz = is_finite(ellipse.smaller.xyz) ? ellipse.smaller.xyz : vec3(0.0);
-    ellipse.smaller.w = is_finite(ellipse.smaller.w) ? clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger) : ellipse.larger;
+    bool is_number = is_finite(ellipse.larger) && is_finite(ellipse.smaller);
+    ellipse.larger = is_number ? clamp(ellipse.larger, least, most) : most;
+    ellipse.smaller.xyz = is_number ? ellipse.smaller.xyz : vec3(0.0);
+    ellipse.smaller.w = is_number ? clamp(ellipse.smaller.w, ellipse.larger / 32.0, ellipse.larger) : ellipse.larger;
     return ellipse;
 }
 
-// All invocations of the subgroup come here; `met`: there is a surface.
+// All invocations of the group come here; `met`: there is a surface.
 void land(bool met, Landing landing, MaterialPoint point) {
     Material material = landing.material;
     PhotonRay photon = landing.photon;
     Lobes lobes = lobes_of_material(material, point);
     bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
-    bool carries = met && max3(photon.flux) > 0.0;
+    // Flux that is no number lands too: it is counted where discs are made of photons (photon_splat/project.comp).
+    bool is_number = is_finite(photon.flux);
+    bool carries = met && (!is_number || max3(photon.flux) > 0.0);
     bool lands = carries && (landing.may_diffuse || max3(lobes.diffuse_albedo) > 0.0);
     uint place;
     APPEND_TO_STAGE(counts, push.landed_stage, lands, place)
@@ -110,7 +113,7 @@ void land(bool met, Landing landing, MaterialPoint point) {
         return;
     }
     vec3 transmission = unlit ? vec3(0.0) : point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
-    bool goes_on = carries && max(max3(lobes.f0), max(lobes.f90, max3(transmission))) > 0.0;
+    bool goes_on = carries && is_number && max(max3(lobes.f0), max(lobes.f90, max3(transmission))) > 0.0;
     APPEND_TO_STAGE(arrival_counts, push.stage + 1u, goes_on, place)
     if (goes_on && place < push.capacity) {
         bool refracts = medium_of(material).is_closed && material.ior > 0.0 && max3(transmission) > 0.0;

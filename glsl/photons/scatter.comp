@@ -93,15 +93,15 @@ bool scatter(inout PhotonRay photon, uvec4 surface, uvec4 layer, uint index, out
     float arriving = abs(dot(geometric_normal, photon.direction));
     float adjoint = viewer.z * abs(side) / (max(arriving, GRAZING) * max(abs(drawn.direction.z), GRAZING));
     vec3 flux = photon.flux * drawn.weight * adjoint;
+    if (!is_finite(flux) || max3(flux) <= 0.0) {
+        return false;
+    }
     if (FIRST == 0u) {
         float survival = min(2.0 * max3(flux) / max(max3(photon.flux), 1e-37), 1.0);
         if (random.w >= survival) {
             return false;
         }
         flux /= survival;
-    }
-    if (!(max3(flux) > 0.0)) {
-        return false;
     }
     if (side < 0.0 && matter.relative_ior != 1.0) {
         photon.bits ^= PHOTON_INSIDE;

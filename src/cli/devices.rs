@@ -28,6 +28,11 @@ fn paragraph(device: &DeviceReport) -> String {
     if let Some(reason) = &device.unfit {
         text += &format!("     unfit: {reason}\n");
     }
+    for of_method in device.lacks.chunk_by(|(one, _), (next, _)| one == next) {
+        let ((method, what), more) = (&of_method[0], of_method.len() - 1);
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+        text += &format!("     cannot run {method}: {what}{more}\n");
+    }
     let width = device.limits.iter().map(|(limit, _)| limit.chars().count()).max().unwrap_or_default();
     for (limit, value) in &device.limits {
         text += &format!("     {limit:width$}  {value}\n");
@@ -51,10 +56,14 @@ mod tests {
                 ("image side".to_owned(), "16384".to_owned()),
                 ("push constants".to_owned(), "256 B".to_owned()),
             ],
+            lacks: vec![(
+                "photons".to_owned(),
+                "photons/land needs 7 storage buffers in a stage (4 are offered)".to_owned(),
+            )],
             unfit: Some("it has no timestamps".to_owned()),
             default: true,
         };
-        let expected = "* 1  llvmpipe\n     cpu, Mesa 25.0.7, Vulkan 1.4.305\n     unfit: it has no timestamps\n     image side      16384\n     push constants  256 B\n";
+        let expected = "* 1  llvmpipe\n     cpu, Mesa 25.0.7, Vulkan 1.4.305\n     unfit: it has no timestamps\n     cannot run photons: photons/land needs 7 storage buffers in a stage (4 are offered)\n     image side      16384\n     push constants  256 B\n";
         assert_eq!(paragraph(&device), expected);
     }
 }

@@ -19,6 +19,8 @@ pub(crate) trait Estimator {
     const SLOTS: &'static [Slot] = &Slot::ALL;
     /// Piece and name of the pass that a frame begins with: the row that says that nothing changed.
     const FIRST_PASS: [&'static str; 2];
+    /// The programs that it may run, by their names below `glsl/`, or how these begin before a star.
+    const SHADERS: &'static [&'static str];
     type Options: Options;
 
     /// What a frame asks of it.

@@ -241,6 +241,7 @@ pub(crate) struct Path;
 impl Estimator for Path {
     const NAME: &'static str = "path";
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
+    const SHADERS: &'static [&'static str] = &["path/*", "particle/*"];
     type Options = PathOptions;
 
     fn samples(options: &PathOptions) -> Samples {

@@ -202,3 +202,23 @@ fn lattice_floor() -> Scene {
     place(&mut scene, vec![floor], DAffine3::IDENTITY);
     scene
 }
+
+/// Rays from far away are at distances whose rounding is coarser than the march's least step.
+#[test]
+fn marches_from_far_away_end() {
+    let session = Session::open();
+    let mut room = Stage::new(&session, closed_box(1.0, lambert([0.5; 3])));
+    let settings = photon_options(&[("resolution", "128"), ("trace", "march")]);
+    let mut random = Random::new(5);
+    let rays: Vec<Ray> = (0..256)
+        .map(|_| {
+            let way = direction(&mut random);
+            ray(random.point() * 0.5 - way * 1e5, way, f32::MAX)
+        })
+        .collect();
+    let found = room.trace(&settings, &rays);
+    let [steps, cut_off, misses] = ["steps", "cut off", "misses"].map(|name| found.work("trace/march", name));
+    println!("{steps} steps, {misses} misses, {cut_off} cut off");
+    assert!(steps < 256 * 3 * 4 * 128, "{steps} steps");
+    assert_eq!(cut_off, 0);
+}

@@ -5,6 +5,7 @@ use std::sync::Once;
 use crate::graph::Store;
 use crate::renderer::{Context, ContextOptions, Frame, FrameRequest, Renderer, Settings, Validation};
 use crate::scene::Scene;
+use crate::vulkan::DeviceTraits;
 
 /// Names what the layer checks: `off`, `core`, `sync` (the default) or `gpu`.
 const VALIDATION: &str = "IRRADIA_TEST_VALIDATION";
@@ -19,6 +20,11 @@ pub(crate) struct Session {
 
 impl Session {
     pub(crate) fn open() -> Session {
+        Session::with_traits(|known| known)
+    }
+
+    /// On a device that is taken for one of other traits.
+    pub(crate) fn with_traits(traits: impl FnOnce(DeviceTraits) -> DeviceTraits) -> Session {
         let validation = match std::env::var(VALIDATION).as_deref() {
             Err(_) | Ok("sync") => Validation::Synchronization,
             Ok("core") => Validation::Core,
@@ -27,7 +33,7 @@ impl Session {
             Ok(other) => panic!("{VALIDATION} is {other:?}; it takes off, core, sync or gpu"),
         };
         let options = ContextOptions { device: std::env::var(DEVICE).ok(), validation, ..ContextOptions::default() };
-        let context = Context::new(&options).expect("a device for tests");
+        let context = Context::with_traits(&options, traits).expect("a device for tests");
         static SAID: Once = Once::new();
         SAID.call_once(|| {
             let device = context.device();

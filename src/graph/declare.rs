@@ -14,7 +14,7 @@ use super::key::hash_of;
 use super::pass::{ClearColor, Pass, Work};
 use super::resource::{Body, KeptUse, Proof, ReadBack, Resource};
 use super::store::Store;
-use crate::vulkan::{Buffer, Image, ImageInfo};
+use crate::vulkan::{Buffer, DeviceTraits, Image, ImageInfo};
 
 /// One frame while it is declared.
 pub(crate) struct Graph<'s> {
@@ -85,9 +85,9 @@ impl<'s> Graph<'s> {
         self.mistake.get_or_insert_with(sentence);
     }
 
-    /// Whether the device is a software driver, where other variants of a pass may be the faster ones.
-    pub(crate) fn runs_on_cpu(&self) -> bool {
-        self.store.device().is_cpu()
+    /// What passes are shaped by that depends on the driver.
+    pub(crate) fn traits(&self) -> DeviceTraits {
+        self.store.device().traits()
     }
 
     /// The longest side that an image of the device may have.

@@ -173,7 +173,8 @@ impl Graph<'_> {
         (number, read_back): (usize, &[(u64, u64)]),
         counters: &mut Vec<PendingCounter>,
     ) -> Result<(), VulkanError> {
-        self.store.recorder.begin(u32::try_from(part.len()).unwrap_or(MAX_PASSES))?;
+        let programs = part.iter().filter_map(|index| self.passes[*index].program);
+        self.store.recorder.begin(&programs.collect())?;
         let stamp = |graph: &Self, place: u32| {
             graph.store.recorder.full_barrier();
             graph.store.recorder.timestamp(&graph.store.queries, stamp_of_frame(number) + place);

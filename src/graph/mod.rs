@@ -37,6 +37,8 @@ mod report;
 mod resource;
 mod store;
 mod timing;
+#[cfg(test)]
+mod uses;
 mod watch;
 
 pub(crate) use declare::{Graph, Output};

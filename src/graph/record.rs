@@ -24,6 +24,8 @@ impl Graph<'_> {
         timing: Timing,
         counters: &mut Vec<PendingCounter>,
     ) -> Result<(), VulkanError> {
+        #[cfg(test)]
+        self.note_program(index);
         let images = self.images_of(index);
         let barriers = self.barriers_before(index, &images);
         let recorder = &self.store.recorder;

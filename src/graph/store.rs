@@ -46,6 +46,9 @@ pub(crate) struct Store {
     pub(super) grown: HashMap<String, usize>,
     /// What outlasts frames, by name.
     pub(super) kept: HashMap<String, Kept>,
+    /// What passes that ran made of programs and formats.
+    #[cfg(test)]
+    pub(crate) uses: Vec<super::uses::ProgramUse>,
 }
 
 /// Something that outlasts frames (super::kept).
@@ -80,6 +83,8 @@ impl Store {
             read_back: None,
             grown: HashMap::new(),
             kept: HashMap::new(),
+            #[cfg(test)]
+            uses: Vec::new(),
         })
     }
 

@@ -34,6 +34,10 @@ pub(crate) trait Method {
     /// What it takes of a frame, besides the G-buffer.
     fn inputs(options: &Self::Options) -> Inputs;
 
+    /// The programs that it may run, by their names below `glsl/`, or how these begin before a star: a device that lacks what one of them needs cannot run the
+    /// method with these options. `software`: shaders run on the host's processor.
+    fn shaders(options: &Self::Options, software: bool) -> Vec<&'static str>;
+
     /// Why the scene or the options leave it nothing to do.
     fn skip(options: &Self::Options, facts: &Facts) -> Option<&'static str>;
 

@@ -26,6 +26,7 @@ pub(crate) struct MethodEntry {
     pub(crate) skip: fn(&Settings, &Facts) -> Option<&'static str>,
     pub(crate) reduced: fn(&Settings) -> Option<String>,
     pub(crate) lead_in: fn(&Settings) -> u32,
+    pub(crate) shaders: fn(&Settings, bool) -> Vec<&'static str>,
     pub(crate) declare: Declare,
 }
 
@@ -37,6 +38,7 @@ pub(crate) struct EstimatorEntry {
     pub(crate) light_paths: fn(&Settings) -> LightPaths,
     pub(crate) filter: fn(&Settings) -> PixelFilter,
     pub(crate) samples: fn(&Settings) -> Samples,
+    pub(crate) shaders: &'static [&'static str],
     pub(crate) open: Open,
 }
 
@@ -57,6 +59,7 @@ macro_rules! entries {
             skip: |settings, facts| <crate::$slot::$module::$method as Method>::skip(&settings.$module, facts),
             reduced: |settings| <crate::$slot::$module::$method as Method>::reduced(&settings.$module),
             lead_in: |settings| <crate::$slot::$module::$method as Method>::lead_in(&settings.$module),
+            shaders: |settings, software| <crate::$slot::$module::$method as Method>::shaders(&settings.$module, software),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
         }),*]
     };
@@ -71,6 +74,7 @@ macro_rules! estimator_entries {
             light_paths: |settings| <crate::estimator::$estimator::$type as Estimator>::light_paths(&settings.$estimator),
             filter: |settings| <crate::estimator::$estimator::$type as Estimator>::filter(&settings.$estimator),
             samples: |settings| <crate::estimator::$estimator::$type as Estimator>::samples(&settings.$estimator),
+            shaders: <crate::estimator::$estimator::$type as Estimator>::SHADERS,
             open: |pipelines| <crate::estimator::$estimator::$type as Estimator>::open(pipelines),
         }),*]
     };
@@ -86,6 +90,20 @@ macro_rules! tables {
     };
 }
 for_all_methods! { tables }
+
+/// All methods and estimators with these options: their names, and the programs that they may run.
+pub(super) fn all_methods(
+    settings: &Settings,
+    software: bool,
+    of_inputs: fn(Inputs) -> &'static [&'static str],
+) -> Vec<(&'static str, Vec<&'static str>)> {
+    let methods = [DIRECT, DIFFUSE, CAUSTICS, SPECULAR].into_iter().flatten().map(|method| {
+        let mut shaders = (method.shaders)(settings, software);
+        shaders.extend(of_inputs((method.inputs)(settings)));
+        (method.name, shaders)
+    });
+    methods.chain(ESTIMATORS.iter().map(|estimator| (estimator.name, estimator.shaders.to_vec()))).collect()
+}
 
 impl Methods {
     /// The estimator that fills some slot, if one does. It then fills `direct` and `emission` too where rays are asked for.

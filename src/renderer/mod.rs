@@ -24,6 +24,7 @@ pub(crate) mod declare;
 mod estimates;
 mod fault;
 mod frame;
+pub(crate) mod limits;
 mod methods;
 mod render;
 mod repeat;

@@ -8,6 +8,7 @@ use super::context::Context;
 use super::declare::{Declared, Prepared, declare, inputs_of, wanted_methods};
 use super::estimates::{Estimates, Means};
 use super::frame::{Frame, FrameRequest};
+use super::limits::first_lack;
 use super::methods::{EstimatorEntry, Filler};
 use super::settings::Settings;
 use crate::frame::check::check_images;
@@ -19,7 +20,7 @@ use crate::image::ColorImage;
 use crate::method::{Error, Rays};
 use crate::scene::Scene;
 use crate::slot::Slot;
-use crate::vulkan::VulkanError;
+use crate::vulkan::{Device, VulkanError};
 
 /// Makes frames with one set of settings on one device.
 ///
@@ -40,12 +41,12 @@ impl Renderer {
     /// A renderer on `context`'s device.
     ///
     /// # Errors
-    /// If an option is out of range, or the device has no memory left.
+    /// If an option is out of range, the device lacks what a method needs, or it has no memory left.
     pub fn new(context: &Context, settings: Settings) -> Result<Renderer, Error> {
         let store = Store::new(context.pipelines())?;
         let held = (None, LightSet::default(), None, None);
         let (data, lights, traced, estimates) = held;
-        check(&settings)?;
+        check(&settings, context.shared_device())?;
         Ok(Renderer { settings, data, lights, traced, store, estimates })
     }
 
@@ -57,9 +58,9 @@ impl Renderer {
     /// Replaces the settings.
     ///
     /// # Errors
-    /// If an option is out of range; the old settings stand.
+    /// If an option is out of range, or the device lacks what a method needs; the old settings stand.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
-        check(&settings)?;
+        check(&settings, self.store.device())?;
         self.settings = settings;
         Ok(())
     }
@@ -300,8 +301,12 @@ pub(super) fn want(graph: &mut Graph<'_>, declared: &Declared, request: &FrameRe
     }
 }
 
-fn check(settings: &Settings) -> Result<(), Error> {
+fn check(settings: &Settings, device: &Device) -> Result<(), Error> {
     settings.check().map_err(|fault| Error::Settings(fault.to_string()))?;
+    if let Some((piece, what)) = first_lack(device.offer(), settings, device.traits().software) {
+        let (device, piece) = (device.report().name.clone(), piece.to_owned());
+        return Err(VulkanError::Lacks { device, piece, what }.into());
+    }
     for sentence in settings.reduced() {
         tracing::warn!("{sentence}");
     }

@@ -92,8 +92,9 @@ impl MaterialSets {
         materials: &[Vec<(u32, BindingKind, Descriptor)>],
     ) -> Result<MaterialSets, VulkanError> {
         let count = u32::try_from(materials.len()).unwrap_or(u32::MAX).max(1);
+        let textures = materials.iter().map(|bindings| bindings.len() as u32).sum::<u32>().max(1);
         let sizes =
-            [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count * 8 }];
+            [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: textures }];
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
         // SAFETY: the device is alive.
         let pool =

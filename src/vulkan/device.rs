@@ -14,8 +14,10 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
+use super::limits::Offer;
 use super::loader_lock;
 use super::report::{self, DeviceReport, Survey};
+use super::traits::DeviceTraits;
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default)]
@@ -45,8 +47,17 @@ pub(crate) struct Device {
 
 impl Device {
     pub(crate) fn new(options: &ContextOptions) -> Result<Arc<Device>, VulkanError> {
+        Device::with_traits(options, |known| known)
+    }
+
+    /// With traits made of those that the driver is known for.
+    pub(crate) fn with_traits(
+        options: &ContextOptions,
+        traits: impl FnOnce(DeviceTraits) -> DeviceTraits,
+    ) -> Result<Arc<Device>, VulkanError> {
         let instance = Instance::new(options.validation)?;
-        let (physical, survey) = choose(&instance, options.device.as_deref())?;
+        let (physical, mut survey) = choose(&instance, options.device.as_deref())?;
+        survey.traits = traits(survey.traits);
         let priorities = [1.0];
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
@@ -159,8 +170,21 @@ impl Device {
         }
     }
 
-    pub(crate) fn is_cpu(&self) -> bool {
-        self.survey.properties.device_type == vk::PhysicalDeviceType::CPU
+    pub(crate) fn offer(&self) -> &Offer {
+        &self.survey.offer
+    }
+
+    pub(crate) fn traits(&self) -> DeviceTraits {
+        self.survey.traits
+    }
+
+    /// Before a draw, or a blit, which drivers draw.
+    pub(crate) fn check_draws(&self) -> Result<(), VulkanError> {
+        if self.traits().draws {
+            return Ok(());
+        }
+        let reason = "its driver draws nothing with vectors of this width (LP_NATIVE_VECTOR_WIDTH)".to_owned();
+        Err(VulkanError::Unfit { device: self.report().name.clone(), reason })
     }
 
     pub(crate) fn limits(&self) -> &vk::PhysicalDeviceLimits {

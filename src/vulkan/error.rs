@@ -35,6 +35,18 @@ pub enum VulkanError {
         /// What it lacks, and what needs it.
         reason: String,
     },
+    /// The device lacks what a method needs.
+    #[error(
+        "{piece} cannot run on {device}: {what}; choose another method, or another device with --device (irradia devices lists what each lacks)"
+    )]
+    Lacks {
+        /// The device's name.
+        device: String,
+        /// The method, or what every frame has.
+        piece: String,
+        /// Which of its programs needs what.
+        what: String,
+    },
     /// Validation was asked for, but its layer is absent.
     #[error(
         "validation was asked for, but the layer VK_LAYER_KHRONOS_validation is absent; install it (Debian, Ubuntu: apt install vulkan-validationlayers)"

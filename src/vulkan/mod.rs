@@ -6,11 +6,13 @@
 
 mod copy;
 mod crash_markers;
+mod descriptor_counts;
 mod descriptors;
 mod device;
 mod draw;
 mod error;
 mod instance;
+pub(crate) mod limits;
 #[cfg(debug_assertions)]
 mod live_shaders;
 mod loader_lock;
@@ -22,6 +24,7 @@ pub(crate) mod program;
 mod queries;
 mod recorder;
 mod report;
+mod traits;
 mod transfer;
 
 pub use crash_markers::CrashMarkers;
@@ -41,5 +44,6 @@ pub(crate) use pipelines::{
 pub(crate) use queries::Queries;
 pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
-pub(crate) use report::devices;
+pub(crate) use report::{Survey, devices};
+pub(crate) use traits::DeviceTraits;
 pub(crate) use transfer::{buffer_with, image_with};

@@ -154,6 +154,9 @@ impl Pipelines {
             return Ok(*pipeline);
         }
         let start = Instant::now();
+        if key.raster.is_some() {
+            self.device.check_draws()?;
+        }
         let layouts = self.layouts(program)?;
         let raw = self.create(program, constants, layouts.pipeline, key.raster.as_ref())?;
         self.device.set_name(raw, program.name);
@@ -368,7 +371,7 @@ impl Pipelines {
         let anisotropic = texture
             && filter == vk::Filter::LINEAR
             && self.device.survey.features.sampler_anisotropy == vk::TRUE
-            && !self.device.is_cpu();
+            && !self.device.traits().software;
         let mode =
             if filter == vk::Filter::NEAREST { vk::SamplerMipmapMode::NEAREST } else { vk::SamplerMipmapMode::LINEAR };
         let info = vk::SamplerCreateInfo::default()
@@ -423,16 +426,4 @@ pub(crate) fn pipeline_stages(program: &Program) -> vk::PipelineStageFlags2 {
                 StageKind::Compute => vk::PipelineStageFlags2::COMPUTE_SHADER,
             }
     })
-}
-
-/// Descriptor pool sizes for `sets` sets of ordinary passes.
-pub(crate) fn pool_sizes(sets: u32) -> [vk::DescriptorPoolSize; 5] {
-    let kinds = [
-        (BindingKind::SampledImage(ImageDim::D2), 8),
-        (BindingKind::StorageImage(ImageDim::D2), 6),
-        (BindingKind::TexelBuffer, 4),
-        (BindingKind::Uniform, 4),
-        (BindingKind::Storage, 8),
-    ];
-    kinds.map(|(kind, each)| vk::DescriptorPoolSize { ty: kind.descriptor_type(), descriptor_count: sets * each })
 }

@@ -51,7 +51,28 @@ impl Program {
 #[derive(Debug)]
 pub(crate) struct Stage {
     pub(crate) kind: StageKind,
+    pub(crate) needs: StageNeeds,
     pub(crate) spirv: Spirv,
+}
+
+/// What a stage asks of a device (src/vulkan/limits.rs).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct StageNeeds {
+    /// Texel buffers count among them.
+    pub(crate) sampled_images: u32,
+    pub(crate) samplers: u32,
+    pub(crate) storage_images: u32,
+    pub(crate) uniform_buffers: u32,
+    pub(crate) storage_buffers: u32,
+    pub(crate) shared_bytes: u32,
+    /// `VkSubgroupFeatureFlags`.
+    pub(crate) subgroup_operations: u32,
+}
+
+impl StageNeeds {
+    pub(crate) fn bindings(&self) -> u32 {
+        self.sampled_images + self.storage_images + self.uniform_buffers + self.storage_buffers
+    }
 }
 
 /// SPIR-V as bytes in the machine's order.

@@ -8,10 +8,10 @@ use std::sync::{Arc, PoisonError};
 
 use ash::vk;
 
+use super::descriptor_counts::DescriptorCounts;
 use super::device::Device;
 use super::error::{Called, VulkanError};
 use super::memory::Image;
-use super::pipelines::pool_sizes;
 use super::queries::Queries;
 
 /// An execution and memory dependency between two groups of stages.
@@ -67,7 +67,7 @@ pub(crate) struct Recorder {
     pub(super) commands: vk::CommandBuffer,
     fence: vk::Fence,
     pub(super) descriptors: vk::DescriptorPool,
-    capacity: u32,
+    capacity: DescriptorCounts,
 }
 
 impl Recorder {
@@ -78,7 +78,7 @@ impl Recorder {
             commands: vk::CommandBuffer::null(),
             fence: vk::Fence::null(),
             descriptors: vk::DescriptorPool::null(),
-            capacity: 0,
+            capacity: DescriptorCounts::default(),
         };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(device.survey.queue_family);
         // SAFETY: the device is alive; what is made is destroyed by `drop`, for which null handles are no-ops.
@@ -91,22 +91,21 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Starts a recording with room for `sets` descriptor sets. The previous one has been waited for.
-    pub(crate) fn begin(&mut self, sets: u32) -> Result<(), VulkanError> {
+    /// Starts a recording with room for so many descriptors. The previous one has been waited for.
+    pub(crate) fn begin(&mut self, wanted: &DescriptorCounts) -> Result<(), VulkanError> {
         let raw = &self.device.raw;
         // SAFETY: the fence of the previous recording was waited for by `finish`, so nothing here is in use.
         unsafe {
             raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()).called("vkResetCommandPool")?;
-            if sets > self.capacity {
+            if !self.capacity.holds(wanted) {
                 raw.destroy_descriptor_pool(self.descriptors, None);
                 self.descriptors = vk::DescriptorPool::null();
-                self.capacity = 0;
-                let capacity = sets.next_power_of_two().max(64);
-                let sizes = pool_sizes(capacity);
-                let info = vk::DescriptorPoolCreateInfo::default().max_sets(capacity).pool_sizes(&sizes);
+                let capacity = std::mem::take(&mut self.capacity).grown_to(wanted);
+                let sizes = capacity.pool_sizes();
+                let info = vk::DescriptorPoolCreateInfo::default().max_sets(capacity.sets()).pool_sizes(&sizes);
                 self.descriptors = raw.create_descriptor_pool(&info, None).called("vkCreateDescriptorPool")?;
                 self.capacity = capacity;
-            } else if self.capacity > 0 {
+            } else if self.descriptors != vk::DescriptorPool::null() {
                 raw.reset_descriptor_pool(self.descriptors, vk::DescriptorPoolResetFlags::empty())
                     .called("vkResetDescriptorPool")?;
             }

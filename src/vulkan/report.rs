@@ -7,6 +7,8 @@ use serde::Serialize;
 
 use super::error::VulkanError;
 use super::instance::{Instance, Validation, version_text};
+use super::limits::{FORMATS, Offer};
+use super::traits::DeviceTraits;
 
 /// One device as `irradia devices` lists it.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -24,6 +26,8 @@ pub struct DeviceReport {
     pub api: String,
     /// The limits that matter here, as name and value.
     pub limits: Vec<(String, String)>,
+    /// Methods with what they need and the device lacks; empty if all can run.
+    pub lacks: Vec<(String, String)>,
     /// Why it cannot be used; `None` if it can.
     pub unfit: Option<String>,
     /// Whether the default choice falls on it.
@@ -44,6 +48,8 @@ pub(crate) struct Survey {
     pub(crate) features: vk::PhysicalDeviceFeatures,
     pub(crate) queue_family: u32,
     pub(crate) timestamp_bits: u32,
+    pub(crate) traits: DeviceTraits,
+    pub(crate) offer: Offer,
 }
 
 impl Survey {
@@ -64,6 +70,17 @@ impl Survey {
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         let family = families.iter().position(|family| family.queue_flags.contains(wanted));
         let limits = &properties.limits;
+        let traits = DeviceTraits::of(properties.device_type, vulkan12.driver_id, vulkan11.subgroup_size);
+        let features_of = |format: vk::Format| {
+            // SAFETY: as above.
+            let found = unsafe { raw.get_physical_device_format_properties(device, format) };
+            let mut images = found.optimal_tiling_features;
+            if !traits.draws {
+                images &= !vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+            }
+            (format, images)
+        };
+        let offer = Offer::new(limits, &vulkan11, FORMATS.iter().copied().map(features_of).collect());
         let device_bytes: u64 = memory
             .memory_heaps_as_slice()
             .iter()
@@ -90,6 +107,7 @@ impl Survey {
                 ("subgroup size".to_owned(), vulkan11.subgroup_size.to_string()),
                 ("timestamp period, ns".to_owned(), limits.timestamp_period.to_string()),
             ],
+            lacks: Vec::new(),
             unfit: unfit(raw, device, &properties, family.map(|family| families[family].timestamp_valid_bits)),
             default: false,
         };
@@ -100,6 +118,8 @@ impl Survey {
             features,
             queue_family: family.and_then(|family| u32::try_from(family).ok()).unwrap_or(0),
             timestamp_bits,
+            traits,
+            offer,
         }
     }
 }
@@ -173,10 +193,10 @@ pub(crate) fn survey(instance: &Instance) -> Result<Vec<(vk::PhysicalDevice, Sur
 ///
 /// # Errors
 /// Without a loader, or when the loader fails.
-pub(crate) fn devices() -> Result<Vec<DeviceReport>, VulkanError> {
+pub(crate) fn devices() -> Result<Vec<Survey>, VulkanError> {
     let instance = match Instance::new(Validation::Off) {
         Err(VulkanError::NoDevice) => return Ok(Vec::new()),
         instance => instance?,
     };
-    Ok(survey(&instance)?.into_iter().map(|(_, survey)| survey.report).collect())
+    Ok(survey(&instance)?.into_iter().map(|(_, survey)| survey).collect())
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::descriptor_counts::DescriptorCounts;
 use super::device::Device;
 use super::error::VulkanError;
 use super::memory::{Buffer, Image, ImageInfo, Location};
@@ -22,7 +23,7 @@ pub(crate) fn buffer_with(
     if !buffer.write(0, bytes) {
         let staging = staging(device, name, bytes)?;
         let mut recorder = Recorder::new(device)?;
-        recorder.begin(0)?;
+        recorder.begin(&DescriptorCounts::default())?;
         recorder.copy(&staging, 0, &buffer, 0, size.max(4));
         recorder.full_barrier();
         recorder.finish()?;
@@ -38,6 +39,9 @@ pub(crate) fn image_with(
     layers: &[&[u8]],
 ) -> Result<Arc<Image>, VulkanError> {
     use vk::ImageLayout as Layout;
+    if info.mips > 1 {
+        device.check_draws()?;
+    }
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
     let image = Image::new(device, name, info, usage, vk::ImageCreateFlags::empty())?;
     let relayout = |mips: std::ops::Range<u32>, old_layout, new_layout| Barriers {
@@ -57,14 +61,14 @@ pub(crate) fn image_with(
     // One layer at a time bounds the staging memory.
     for (number, layer) in (0..).zip(layers) {
         let staging = staging(device, name, layer)?;
-        recorder.begin(0)?;
+        recorder.begin(&DescriptorCounts::default())?;
         if number == 0 {
             recorder.barriers(&relayout(0..info.mips, Layout::UNDEFINED, Layout::TRANSFER_DST_OPTIMAL));
         }
         recorder.write_image(&staging, 0, &image, 0, number);
         recorder.finish()?;
     }
-    recorder.begin(0)?;
+    recorder.begin(&DescriptorCounts::default())?;
     for mip in 1..info.mips {
         recorder.barriers(&relayout(mip - 1..mip, Layout::TRANSFER_DST_OPTIMAL, Layout::TRANSFER_SRC_OPTIMAL));
         recorder.halve_mip(&image, mip);

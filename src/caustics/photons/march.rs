@@ -11,8 +11,8 @@ use crate::shaders::photon_lists::{March, MarchPush};
 /// Finds what the rays hit; `counts` holds how many there are.
 pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays, counts: BufferRef<u32>) {
     let words = vk::Format::R32G32B32A32_UINT;
-    // Steps taken, and rays that hit nothing.
-    let work = graph.buffer::<u32>(&format!("photons.march_work.{}", rays.stage), 2);
+    // Steps taken, rays that hit nothing, and those cut off at a bound that none should reach.
+    let work = graph.buffer::<u32>(&format!("photons.march_work.{}", rays.stage), 3);
     graph.fill_buffer(&format!("caustics/photons/trace/march-clear.{}", rays.stage), work, 0);
     let pass = March {
         rays: rays.rays.texels(words),
@@ -34,5 +34,6 @@ pub(crate) fn trace(graph: &mut Graph<'_>, lists: &SceneLists, rays: &PhotonRays
         .pass(&format!("caustics/photons/trace/march.{}", rays.stage), pass)
         .count("steps", work, 0)
         .count("misses", work, 1)
+        .count("cut off", work, 2)
         .threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
 }

@@ -26,7 +26,7 @@ mod upsample;
 mod views;
 
 use self::emit::Arrivals;
-use self::options::{PhotonOptions, PhotonTracing};
+use self::options::{PhotonGeometry, PhotonOptions, PhotonSplatting, PhotonTracing};
 use self::records::{LandedPhotons, PhotonRays};
 use self::splat::{SplatInputs, splat};
 use crate::frame::inputs::FrameInputs;
@@ -63,6 +63,39 @@ impl Method for Photons {
     fn inputs(options: &PhotonOptions) -> Inputs {
         let rays = if options.trace == PhotonTracing::Bvh { Rays::ToSurfaces } else { Rays::None };
         Inputs { light_depth: true, light_flux: false, rays }
+    }
+
+    fn shaders(options: &PhotonOptions, _: bool) -> Vec<&'static str> {
+        let choose = ["photons/pyramid", "photons/choose", "photons/mark", "photons/number", "photons/list"];
+        let mut shaders = [&choose[..], &["photons/specular*", "photons/emit", "photons/scatter"]].concat();
+        if options.trace == PhotonTracing::Bvh {
+            shaders.extend(["photons/trace", "photons/land_traced"]);
+        } else {
+            shaders.push("photons/land");
+            match options.geometry {
+                PhotonGeometry::Lists => shaders.push("photon_lists/append*"),
+                PhotonGeometry::Layers(_) => shaders.extend(["photon_lists/peel*", "photon_lists/layer"]),
+            }
+            match options.trace {
+                PhotonTracing::Lines => shaders.push("photon_lists/line*"),
+                _ => shaders.extend(["photon_lists/march", "photon_lists/occupancy", "photon_lists/coarser"]),
+            }
+        }
+        shaders.extend([
+            "photon_splat/start",
+            "photon_splat/project",
+            "photon_splat/touch",
+            "photon_splat/clear",
+            "photon_splat/resolve",
+        ]);
+        match options.splat {
+            PhotonSplatting::Discs => shaders.push("photon_splat/discs"),
+            _ => shaders.extend(["photon_splat/scan", "photon_splat/scatter", "photon_splat/gather"]),
+        }
+        if options.downscale != 1 {
+            shaders.push("photon_splat/upsample");
+        }
+        shaders
     }
 
     fn skip(options: &PhotonOptions, facts: &Facts) -> Option<&'static str> {

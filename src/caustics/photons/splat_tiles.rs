@@ -36,8 +36,9 @@ impl TileList {
     }
 }
 
-/// Photons that a group of `tiles` takes at most: a driver may end loops after 65535 rounds, of which a photon takes up to 1⅛.
-pub(super) const PART_PHOTONS: u32 = 32768;
+/// Photons that a group of `tiles` takes at most: what more would keep one group busy while others have none left. It is no more than any device's
+/// loops may do ([`crate::vulkan::DeviceTraits::loop_steps`]), of whose steps a photon takes up to two.
+pub(super) const PART_PHOTONS: u32 = 32000;
 
 pub(super) const WORDS: vk::Format = vk::Format::R32_UINT;
 pub(super) const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;

@@ -50,6 +50,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
     let word = STAGE_WORDS * landed.stage + DISPATCH_WORD;
     graph.pass("caustics/photons/splat/sort", pass).threads_indirect(landed.counts, word);
 
+    let in_step = u32::from(graph.traits().lanes_in_step);
     let gather = |sums: ReadWriteBuffer<u32>, list: TileList, range: [i32; 2]| Gather {
         splat: splat.group(list),
         surface: splat.buffer.group.clone(),
@@ -61,6 +62,7 @@ pub(super) fn tiles(graph: &mut Graph<'_>, splat: &Splat<'_>) {
         result: splat.result.modify(),
         sums,
         crowded: u32::from(list == TileList::Crowded),
+        in_step,
         push: GatherPush {
             image_size: splat.image_size,
             downscale: splat.downscale,

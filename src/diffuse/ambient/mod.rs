@@ -34,6 +34,10 @@ impl Method for Ambient {
         Inputs { rays: Rays::ToSurfaces, ..Inputs::default() }
     }
 
+    fn shaders(_: &AmbientOptions, _: bool) -> Vec<&'static str> {
+        vec!["ambient/*"]
+    }
+
     fn skip(options: &AmbientOptions, facts: &Facts) -> Option<&'static str> {
         match (facts.diffuse, options.rays) {
             (false, _) => Some("no diffuse surface"),

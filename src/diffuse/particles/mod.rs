@@ -41,6 +41,10 @@ impl Method for Particles {
         Inputs { rays: Rays::ToLights, ..Inputs::default() }
     }
 
+    fn shaders(_: &ParticlesOptions, _: bool) -> Vec<&'static str> {
+        vec!["particles/*"]
+    }
+
     fn skip(_: &ParticlesOptions, facts: &Facts) -> Option<&'static str> {
         match (facts.diffuse, facts.lit()) {
             (false, _) => Some("no diffuse surface"),

@@ -40,6 +40,10 @@ impl Method for Rsm {
         Inputs { light_depth: true, light_flux: true, ..Inputs::default() }
     }
 
+    fn shaders(_: &RsmOptions, _: bool) -> Vec<&'static str> {
+        vec!["rsm/*"]
+    }
+
     fn skip(options: &RsmOptions, facts: &Facts) -> Option<&'static str> {
         match (facts.diffuse, options.vpls) {
             (false, _) => Some("no diffuse surface"),

@@ -1,7 +1,7 @@
 //! Irradiance from all VPLs, at pixels or at regions.
 //!
-//! A pass takes a range of the VPLs, and each adds to what the one before it found: the software driver ends all loops of an invocation after 65,535
-//! steps together, those of the rays' ways through the hierarchy included.
+//! A pass takes a range of the VPLs, and each adds to what the one before it found: no invocation may take more steps than the device lets it
+//! ([`DeviceTraits::loop_steps`]), those of the rays' ways through the hierarchy included.
 
 use ash::vk;
 
@@ -16,18 +16,18 @@ use crate::shaders::types::VplRange;
 use crate::shaders::vpl::{
     GatherPixels, GatherPixelsPush, GatherRegions, GatherRegionsPush, GatherStencil, GatherStencilPush,
 };
-use crate::vulkan::{RasterState, StencilState};
+use crate::vulkan::{DeviceTraits, RasterState, StencilState};
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const BLACK: ClearColor = ClearColor::Float([0.0; 4]);
 
-/// VPLs that a pass takes without rays, and that it sends rays to from two receivers.
-const MOST_VPLS: u32 = 1 << 15;
-const TRACED_VPLS: u32 = 96;
+/// Steps that a VPL takes without rays, and at most with rays from two receivers.
+const STEPS: u32 = 2;
+const TRACED_STEPS: u32 = 682;
 
 /// What each pass takes, and its name.
-fn ranges(name: &str, vpl_count: u32, visibility: &Visibility) -> Vec<(String, VplRange)> {
-    let most = if visibility.group.visibility == TRACED { TRACED_VPLS } else { MOST_VPLS };
+fn ranges(name: &str, vpl_count: u32, traced: bool, traits: DeviceTraits) -> Vec<(String, VplRange)> {
+    let most = (traits.loop_steps + 1) / if traced { TRACED_STEPS } else { STEPS };
     let pass = |part: u32| {
         let (first, end) = (part * most, ((part + 1) * most).min(vpl_count));
         let name = if part == 0 { name.to_owned() } else { format!("{name}-{}", part + 1) };
@@ -46,7 +46,8 @@ pub(super) fn gather_pixels(
     let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let [width, height] = buffer.size;
     graph.clear_image("diffuse/vpl/gather/clear", diffuse, BLACK);
-    for (name, range) in ranges("diffuse/vpl/gather/pixels", vpl_count(vpls), visibility) {
+    let traced = visibility.group.visibility == TRACED;
+    for (name, range) in ranges("diffuse/vpl/gather/pixels", vpl_count(vpls), traced, graph.traits()) {
         let terms = u64::from(width) * u64::from(height) * u64::from((range.end - range.first).cast_unsigned());
         let pass = GatherPixels {
             surface: buffer.group.clone(),
@@ -74,7 +75,8 @@ pub(super) fn gather_list(
     let (graph, buffer) = (&mut *cx.graph, cx.frame.surface);
     let irradiance = flattened(graph, buffer.size);
     graph.clear_image("diffuse/vpl/gather/clear-irradiance", irradiance, BLACK);
-    for (name, range) in ranges("diffuse/vpl/gather/regions", vpl_count(vpls), visibility) {
+    let traced = visibility.group.visibility == TRACED;
+    for (name, range) in ranges("diffuse/vpl/gather/regions", vpl_count(vpls), traced, graph.traits()) {
         let pass = GatherRegions {
             surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),
@@ -107,7 +109,8 @@ pub(super) fn gather_stencil(
     let irradiance = flattened(graph, buffer.size);
     let invocations = graph.buffer::<u32>("vpl.invocations", 1);
     graph.fill_buffer("diffuse/vpl/gather/clear-invocations", invocations, 0);
-    for (name, range) in ranges("diffuse/vpl/gather/stencil", vpl_count(vpls), visibility) {
+    let traced = visibility.group.visibility == TRACED;
+    for (name, range) in ranges("diffuse/vpl/gather/stencil", vpl_count(vpls), traced, graph.traits()) {
         let pass = GatherStencil {
             surface: buffer.group.clone(),
             planes: pyramid.planes.sampled(),
@@ -141,4 +144,22 @@ pub(super) fn gather_stencil(
 
 fn flattened(graph: &mut Graph<'_>, size: [u32; 2]) -> ImageRef {
     graph.image("vpl.irradiance", FLOATS, flattened_size(size))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_take_what_the_device_lets_one_invocation_do() {
+        let lavapipe = DeviceTraits { loop_steps: 65_535, ..DeviceTraits::GPU };
+        let all = 196_603;
+        let of = |traced, traits| ranges("gather", all, traced, traits);
+        assert_eq!((of(true, lavapipe).len(), of(false, lavapipe).len()), (2048, 6));
+        assert_eq!((of(true, DeviceTraits::GPU).len(), of(false, DeviceTraits::GPU).len()), (32, 1));
+        let parts = of(true, lavapipe);
+        assert_eq!((parts[1].0.as_str(), parts[1].1.first, parts[1].1.end), ("gather-2", 96, 192));
+        assert!(parts.windows(2).all(|pair| pair[0].1.end == pair[1].1.first));
+        assert_eq!(parts.last().map(|(_, range)| range.end), Some(all.cast_signed()));
+    }
 }

@@ -78,6 +78,7 @@ pub(crate) fn imperfect_shadow_maps(
         points: surfaces.points.texels(FLOATS4),
         area_before: surfaces.area_before.texels(FLOAT),
         drawn: drawn.read_write(),
+        in_step: u32::from(graph.traits().lanes_in_step),
         push: SplatPush {
             vpl_count,
             points_of_set: surfaces.points_of_set,

@@ -37,6 +37,29 @@ impl Method for Vpl {
         Inputs { light_depth: true, light_flux: true, rays }
     }
 
+    fn shaders(options: &VplOptions, software: bool) -> Vec<&'static str> {
+        let mut shaders = vec!["vpl/block_*", "vpl/share", "vpl/vpls", "vpl/gather_pixels"];
+        if options.bounces > 1 {
+            shaders.extend(["vpl/copy", "vpl/path_*"]);
+        }
+        if options.visibility == VplVisibility::Ism {
+            shaders.push("ism/*");
+        }
+        let regions = ["vpl/first_regions", "vpl/larger_regions", "vpl/interpolate", "vpl/resolve"];
+        match (options.shading, software) {
+            (VplShading::Pixels, _) => {}
+            (VplShading::Compute, _) | (VplShading::Auto, true) => {
+                shaders.extend(regions);
+                shaders.push("vpl/gather_regions");
+            }
+            _ => {
+                shaders.extend(regions);
+                shaders.extend(["vpl/mark_regions", "vpl/gather_stencil"]);
+            }
+        }
+        shaders
+    }
+
     fn skip(options: &VplOptions, facts: &Facts) -> Option<&'static str> {
         match (facts.diffuse, options.bounces.min(options.count)) {
             (false, _) => Some("no diffuse surface"),
@@ -88,7 +111,7 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
         _ if level_count == 1 || regions::flattened_size(buffer.size)[0] > cx.graph.longest_side() => {
             VplShading::Pixels
         }
-        VplShading::Auto if cx.graph.runs_on_cpu() => VplShading::Compute,
+        VplShading::Auto if cx.graph.traits().software => VplShading::Compute,
         VplShading::Auto => VplShading::Stencil,
         chosen => chosen,
     };

@@ -27,6 +27,10 @@ impl Method for ShadowMap {
         Inputs { light_depth: true, ..Inputs::default() }
     }
 
+    fn shaders(_: &ShadowOptions, _: bool) -> Vec<&'static str> {
+        vec!["direct/shadow_map"]
+    }
+
     fn skip(_: &ShadowOptions, _: &Facts) -> Option<&'static str> {
         None
     }

@@ -36,6 +36,10 @@ impl Method for Traced {
         Inputs { rays: Rays::ToLights, ..Inputs::default() }
     }
 
+    fn shaders(_: &TracedOptions, _: bool) -> Vec<&'static str> {
+        vec!["direct/punctual", "direct/emitters", "direct/directions"]
+    }
+
     fn skip(_: &TracedOptions, facts: &Facts) -> Option<&'static str> {
         (!facts.lit()).then_some("no light")
     }
