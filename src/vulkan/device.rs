@@ -51,7 +51,6 @@ impl Device {
             .queue_family_index(survey.queue_family)
             .queue_priorities(&priorities)];
         let core = vk::PhysicalDeviceFeatures {
-            geometry_shader: vk::TRUE,
             fragment_stores_and_atomics: vk::TRUE,
             draw_indirect_first_instance: vk::TRUE,
             independent_blend: vk::TRUE,
