@@ -10,6 +10,7 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
+use super::descriptors::Descriptor;
 use super::device::Device;
 use super::error::{Called, VulkanError};
 use super::program::ImageDim;
@@ -104,6 +105,9 @@ impl Buffer {
         location: Location,
     ) -> Result<Buffer, VulkanError> {
         let size = size.max(16).next_multiple_of(4);
+        let texels = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+        let in_storage = device.texels_in_storage && usage.contains(texels);
+        let usage = if in_storage { usage & !texels | vk::BufferUsageFlags::STORAGE_BUFFER } else { usage };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
         let raw = unsafe { device.raw.create_buffer(&info, None) }.called(&format!("vkCreateBuffer for {name}"))?;
@@ -146,8 +150,24 @@ impl Buffer {
         place.map(|place| place.copy_from_slice(bytes)).is_some()
     }
 
-    /// A view of the whole buffer as texels of `format`.
-    pub(crate) fn texels(&self, format: vk::Format) -> Result<vk::BufferView, VulkanError> {
+    /// The whole buffer as texels of `format`.
+    pub(crate) fn texels(&self, format: vk::Format) -> Result<Descriptor, VulkanError> {
+        let device = &self.memory.device;
+        let limit = u64::from(device.limits().max_storage_buffer_range);
+        if !device.texels_in_storage {
+            return self.texel_view(format).map(Descriptor::Texels);
+        }
+        if self.size > limit {
+            return Err(VulkanError::TooLarge {
+                what: self.name.clone(),
+                asked: format!("{} bytes", self.size),
+                limit: limit.to_string(),
+            });
+        }
+        Ok(Descriptor::Buffer(self.raw))
+    }
+
+    fn texel_view(&self, format: vk::Format) -> Result<vk::BufferView, VulkanError> {
         let device = &self.memory.device;
         let mut views = self.views.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(view) = views.get(&format) {

@@ -20,6 +20,7 @@ pub(crate) mod program;
 mod queries;
 mod recorder;
 mod report;
+mod storage_texels;
 mod transfer;
 
 pub use crash_markers::CrashMarkers;
@@ -40,4 +41,5 @@ pub(crate) use queries::Queries;
 pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
 pub(crate) use report::devices;
+pub(crate) use storage_texels::TexelFormats;
 pub(crate) use transfer::{buffer_with, image_with};

@@ -102,7 +102,7 @@ impl Recorder {
                 self.descriptors = vk::DescriptorPool::null();
                 self.capacity = 0;
                 let capacity = sets.next_power_of_two().max(64);
-                let sizes = pool_sizes(capacity);
+                let sizes = pool_sizes(&self.device, capacity);
                 let info = vk::DescriptorPoolCreateInfo::default().max_sets(capacity).pool_sizes(&sizes);
                 self.descriptors = raw.create_descriptor_pool(&info, None).called("vkCreateDescriptorPool")?;
                 self.capacity = capacity;
