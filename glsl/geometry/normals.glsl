@@ -12,16 +12,19 @@ vec3 vertex_position(uint vertex) {
         texelFetch(positions, first).x, texelFetch(positions, first + 1).x, texelFetch(positions, first + 2).x);
 }
 
-// The normal of the triangle, exact however small it is on the screen, where screen-space derivatives of a position are noise.
-// Eleven fetches a fragment, for primitives with vertex normals too: light views and shadows need the plane that was rasterised.
-//
 // `first_vertex`: the triangle's own, whose number among the primitive's vertices is that of the triangle (src/frame/drawn_triangles.rs).
-vec3 face_normal(Instance instance, uint first_vertex) {
+uvec3 corners_of_triangle(Instance instance, uint first_vertex) {
     uint offset = uint(instance.vertex_offset);
     int first = int(instance.first_index + 3u * (first_vertex - offset));
-    uvec2 others = uvec2(texelFetch(indices, first + 1).x, texelFetch(indices, first + 2).x) + offset;
-    vec3 origin = vertex_position(first_vertex);
-    vec3 normal = cross(vertex_position(others.x) - origin, vertex_position(others.y) - origin);
+    return uvec3(first_vertex, texelFetch(indices, first + 1).x + offset, texelFetch(indices, first + 2).x + offset);
+}
+
+// The normal of the triangle, exact however small it is on the screen, where screen-space derivatives of a position are noise.
+// Eleven fetches a fragment, for primitives with vertex normals too: light views and shadows need the plane that was rasterised.
+vec3 face_normal(Instance instance, uint first_vertex) {
+    uvec3 corners = corners_of_triangle(instance, first_vertex);
+    vec3 origin = vertex_position(corners.x);
+    vec3 normal = cross(vertex_position(corners.y) - origin, vertex_position(corners.z) - origin);
     return transform_normal(instance, normal);
 }
 

@@ -6,6 +6,7 @@ use ash::vk;
 
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::light_set::LightSet;
+use super::plane_depth;
 use super::scene_data::{DrawnInstance, SceneData};
 use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{ClearColor, Dependence, Graph};
@@ -57,12 +58,14 @@ pub(crate) fn light_views(
         light_normal: SampledImage::of(reflective.map(|views| views.normal)),
         light_flux: SampledImage::of(reflective.map(|views| views.flux)),
     };
-    let made = LightViews { light_count: lights.count() as u32, group, depth, reflective };
+    let mut made = LightViews { light_count: lights.count() as u32, group, depth, reflective };
     let draw_views = draw_views(set);
     match reflective {
         Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
         None => draw_depth(graph, data, geometry, &made, &draw_views),
     }
+    let drawn = (&made.group, &draw_views[..]);
+    made.group.light_depth = plane_depth::of_lights(graph, data, geometry, drawn, depth);
     made
 }
 

@@ -90,6 +90,11 @@ impl<'s> Graph<'s> {
         self.store.device().is_cpu()
     }
 
+    /// Whether the device rounds vertices to a grid so fine that depths may be taken for those of planes at pixels' centres.
+    pub(crate) fn rasterises_finely(&self) -> bool {
+        self.store.device().limits().sub_pixel_precision_bits >= 8
+    }
+
     /// The longest side that an image of the device may have.
     pub(crate) fn longest_side(&self) -> u32 {
         self.store.device().limits().max_image_dimension2_d
