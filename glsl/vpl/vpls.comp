@@ -31,13 +31,9 @@ layout(push_constant, scalar) uniform Push {
 vec4 sum_of(ivec2 origin, ivec2 low, ivec2 high) {
     ivec2 a = origin + low - 1;
     ivec2 b = origin + high - 1;
-    // Fetched in any case: of branches around fetches, copied into every loop, some drivers' compilers make no end.
-    vec4 both = texelFetch(sums, max(a, ivec2(0)), 0);
-    vec4 left = texelFetch(sums, ivec2(max(a.x, 0), b.y), 0);
-    vec4 upper = texelFetch(sums, ivec2(b.x, max(a.y, 0)), 0);
-    both = low.x > 0 && low.y > 0 ? both : vec4(0.0);
-    left = low.x > 0 ? left : vec4(0.0);
-    upper = low.y > 0 ? upper : vec4(0.0);
+    vec4 both = low.x > 0 && low.y > 0 ? texelFetch(sums, a, 0) : vec4(0.0);
+    vec4 left = low.x > 0 ? texelFetch(sums, ivec2(a.x, b.y), 0) : vec4(0.0);
+    vec4 upper = low.y > 0 ? texelFetch(sums, ivec2(b.x, a.y), 0) : vec4(0.0);
     return max(texelFetch(sums, b, 0) - upper - (left - both), vec4(0.0));
 }
 
