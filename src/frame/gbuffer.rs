@@ -71,7 +71,8 @@ pub(crate) fn gbuffer(
         .draw(list);
 
     draw_textured(graph, data, geometry, &buffer, (&camera, &draw_view));
-    buffer.group.depth = plane_depth::of_camera(graph, data, geometry, (camera, &draw_view), buffer.depth);
+    buffer.depth = plane_depth::of_camera(graph, data, geometry, (camera, &draw_view), buffer.depth);
+    buffer.group.depth = buffer.depth.sampled();
     buffer
 }
 

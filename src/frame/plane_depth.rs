@@ -5,7 +5,7 @@ use ash::vk;
 
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::scene_data::SceneData;
-use crate::graph::bindings::{ImageRef, SampledImage, Uniform};
+use crate::graph::bindings::{ImageRef, Uniform};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::{gbuffer, groups, light_views, types};
 use crate::vulkan::{DepthState, RasterState};
@@ -17,9 +17,9 @@ pub(super) fn of_camera(
     geometry: &Geometry,
     (camera, views): (Uniform<types::Camera>, &[DrawView]),
     drawn: ImageRef,
-) -> SampledImage {
+) -> ImageRef {
     if graph.rasterises_finely() {
-        return drawn.sampled();
+        return drawn;
     }
     let pass =
         gbuffer::PlaneDepth { geometry: geometry.clone(), camera, push: gbuffer::PlaneDepthPush { size: drawn.size() } };
@@ -30,7 +30,7 @@ pub(super) fn of_camera(
         .depth_test(drawn)
         .color(depth, Some(ClearColor::Float([0.0; 4])))
         .draw(list);
-    depth.sampled()
+    depth
 }
 
 /// What is read as the depth of the light views.
@@ -40,9 +40,9 @@ pub(super) fn of_lights(
     geometry: &Geometry,
     (group, views): (&groups::LightViews, &[DrawView]),
     drawn: ImageRef,
-) -> SampledImage {
+) -> ImageRef {
     if graph.rasterises_finely() {
-        return drawn.sampled();
+        return drawn;
     }
     let pass = light_views::PlaneDepth {
         geometry: geometry.clone(),
@@ -56,7 +56,7 @@ pub(super) fn of_lights(
         .depth_test(drawn)
         .color(depth, Some(ClearColor::Float([0.0; 4])))
         .draw(list);
-    depth.sampled()
+    depth
 }
 
 /// Draws what the depth attachment shows already.
