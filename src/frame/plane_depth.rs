@@ -18,11 +18,14 @@ pub(super) fn of_camera(
     (camera, views): (Uniform<types::Camera>, &[DrawView]),
     drawn: ImageRef,
 ) -> ImageRef {
-    if graph.rasterises_finely() {
+    if !graph.draws_plane_depths() {
         return drawn;
     }
-    let pass =
-        gbuffer::PlaneDepth { geometry: geometry.clone(), camera, push: gbuffer::PlaneDepthPush { size: drawn.size() } };
+    let pass = gbuffer::PlaneDepth {
+        geometry: geometry.clone(),
+        camera,
+        push: gbuffer::PlaneDepthPush { size: drawn.size() },
+    };
     let depth = graph.image("gbuffer.plane_depth", vk::Format::R32_SFLOAT, drawn.size());
     let list = draw_list(data, Attributes::Depth, views, |_| true);
     graph
@@ -41,7 +44,7 @@ pub(super) fn of_lights(
     (group, views): (&groups::LightViews, &[DrawView]),
     drawn: ImageRef,
 ) -> ImageRef {
-    if graph.rasterises_finely() {
+    if !graph.draws_plane_depths() {
         return drawn;
     }
     let pass = light_views::PlaneDepth {

@@ -11,7 +11,8 @@ use super::pass::{ClearColor, Pass, Targets};
 use super::resource::Body;
 use crate::vulkan::program::{BindingKind, ImageDim};
 use crate::vulkan::{
-    Attachment, Attachments, Buffer, Descriptor, Image, Pipeline, SubresourceView, TargetFormats, TexelFormats, VulkanError,
+    Attachment, Attachments, Buffer, Descriptor, Image, Pipeline, SubresourceView, TargetFormats, TexelFormats,
+    VulkanError,
 };
 
 impl Graph<'_> {

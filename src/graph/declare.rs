@@ -90,9 +90,9 @@ impl<'s> Graph<'s> {
         self.store.device().is_cpu()
     }
 
-    /// Whether the device rounds vertices to a grid so fine that depths may be taken for those of planes at pixels' centres.
-    pub(crate) fn rasterises_finely(&self) -> bool {
-        self.store.device().limits().sub_pixel_precision_bits >= 8
+    /// Whether depths are drawn anew by the triangles' planes, since the device rounds vertices coarsely.
+    pub(crate) fn draws_plane_depths(&self) -> bool {
+        self.store.device().variants.plane_depths
     }
 
     /// The longest side that an image of the device may have.

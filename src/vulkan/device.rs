@@ -16,6 +16,7 @@ use super::error::{Called, VulkanError};
 use super::instance::{Instance, Validation};
 use super::program::BindingKind;
 use super::report::{self, DeviceReport, Survey};
+use super::variants::Variants;
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default)]
@@ -36,8 +37,7 @@ pub(crate) struct Device {
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
     pub(super) marking: Marking,
-    /// Whether lists that shaders read as texels are storage buffers here (storage_texels.rs).
-    pub(crate) texels_in_storage: bool,
+    pub(crate) variants: Variants,
     allocator: ManuallyDrop<Mutex<Allocator>>,
     live: Mutex<BTreeMap<u64, (String, u64)>>,
     next_id: AtomicU64,
@@ -53,10 +53,10 @@ impl Device {
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
             .queue_priorities(&priorities)];
-        let texels_in_storage = texels_in_storage(&survey.properties.limits);
+        let variants = Variants::of(&survey.properties.limits);
         let core = vk::PhysicalDeviceFeatures {
             // A fetch beyond a texel buffer's end reads zeros, as a driver that has them does by itself.
-            robust_buffer_access: vk::Bool32::from(texels_in_storage),
+            robust_buffer_access: vk::Bool32::from(variants.texels_in_storage),
             fragment_stores_and_atomics: vk::TRUE,
             draw_indirect_first_instance: vk::TRUE,
             independent_blend: vk::TRUE,
@@ -127,7 +127,7 @@ impl Device {
             survey,
             labels,
             marking,
-            texels_in_storage,
+            variants,
             allocator,
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
@@ -163,7 +163,7 @@ impl Device {
     /// What a binding of this kind is to the device.
     pub(crate) fn descriptor_type(&self, kind: BindingKind) -> vk::DescriptorType {
         match kind {
-            BindingKind::TexelBuffer if self.texels_in_storage => vk::DescriptorType::STORAGE_BUFFER,
+            BindingKind::TexelBuffer if self.variants.texels_in_storage => vk::DescriptorType::STORAGE_BUFFER,
             kind => kind.descriptor_type(),
         }
     }
@@ -231,21 +231,6 @@ fn extensions_of(
     // SAFETY: the physical device belongs to the instance.
     let found = unsafe { instance.raw.enumerate_device_extension_properties(physical) };
     found.called("vkEnumerateDeviceExtensionProperties")
-}
-
-/// Names how lists are read, `texels` or `storage`, where the device's limits shall not decide it.
-const LISTS: &str = "IRRADIA_LISTS";
-
-/// Fewer texels than this in a texel buffer are too few: a vertex takes three, a path as many as eight.
-const ENOUGH_TEXELS: u32 = 1 << 26;
-
-/// Whether lists are read from storage buffers: where texel buffers are small.
-fn texels_in_storage(limits: &vk::PhysicalDeviceLimits) -> bool {
-    match std::env::var(LISTS).as_deref() {
-        Ok("storage") => true,
-        Ok("texels") => false,
-        _ => limits.max_texel_buffer_elements < ENOUGH_TEXELS,
-    }
 }
 
 fn choose(instance: &Instance, asked: Option<&str>) -> Result<(vk::PhysicalDevice, Survey), VulkanError> {

@@ -106,7 +106,7 @@ impl Buffer {
     ) -> Result<Buffer, VulkanError> {
         let size = size.max(16).next_multiple_of(4);
         let texels = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-        let in_storage = device.texels_in_storage && usage.contains(texels);
+        let in_storage = device.variants.texels_in_storage && usage.contains(texels);
         let usage = if in_storage { usage & !texels | vk::BufferUsageFlags::STORAGE_BUFFER } else { usage };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
@@ -154,7 +154,7 @@ impl Buffer {
     pub(crate) fn texels(&self, format: vk::Format) -> Result<Descriptor, VulkanError> {
         let device = &self.memory.device;
         let limit = u64::from(device.limits().max_storage_buffer_range);
-        if !device.texels_in_storage {
+        if !device.variants.texels_in_storage {
             return self.texel_view(format).map(Descriptor::Texels);
         }
         if self.size > limit {

@@ -22,6 +22,7 @@ mod recorder;
 mod report;
 mod storage_texels;
 mod transfer;
+mod variants;
 
 pub use crash_markers::CrashMarkers;
 pub(crate) use descriptors::{Descriptor, MaterialSets};

@@ -133,8 +133,7 @@ impl Rewritten {
             self.module.ext_inst_imports.push(Instruction::new(Op::ExtInstImport, None, Some(id), name));
             id
         });
-        let operands =
-            vec![Operand::IdRef(set), Operand::LiteralExtInstInteger(op as u32), Operand::IdRef(operand)];
+        let operands = vec![Operand::IdRef(set), Operand::LiteralExtInstInteger(op as u32), Operand::IdRef(operand)];
         code.instructions.push(Instruction::new(Op::ExtInst, Some(ty), Some(result), operands));
     }
 }

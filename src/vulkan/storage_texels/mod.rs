@@ -96,9 +96,11 @@ impl Rewritten {
 
     /// The declaration of a type or constant, made if there is none.
     fn global(&mut self, op: Op, result_type: Option<Word>, operands: Vec<Operand>) -> Word {
-        let known = self.module.types_global_values.iter().find(|it| {
-            it.class.opcode == op && it.result_type == result_type && it.operands == operands
-        });
+        let known = self
+            .module
+            .types_global_values
+            .iter()
+            .find(|it| it.class.opcode == op && it.result_type == result_type && it.operands == operands);
         known.and_then(|known| known.result_id).unwrap_or_else(|| self.new_global(op, result_type, operands))
     }
 
@@ -110,7 +112,8 @@ impl Rewritten {
     }
 
     fn decorate(&mut self, id: Word, decoration: Decoration, number: Option<u32>) {
-        let operands = [Some(Operand::IdRef(id)), Some(Operand::Decoration(decoration)), number.map(Operand::LiteralBit32)];
+        let operands =
+            [Some(Operand::IdRef(id)), Some(Operand::Decoration(decoration)), number.map(Operand::LiteralBit32)];
         let operands = operands.into_iter().flatten().collect();
         self.module.annotations.push(Instruction::new(Op::Decorate, None, None, operands));
     }
@@ -167,9 +170,8 @@ impl Rewritten {
         let Module { types_global_values, functions, capabilities, debug_names, annotations, .. } = &mut self.module;
         types_global_values.retain(|it| it.result_id.is_none_or(|id| !self.pointers.contains(&id)));
         capabilities.retain(|it| it.operands[0] != Operand::Capability(Capability::SampledBuffer));
-        types_global_values.retain(|it| {
-            it.class.opcode != Op::TypeImage || it.operands[1] != Operand::Dim(Dim::DimBuffer)
-        });
+        types_global_values
+            .retain(|it| it.class.opcode != Op::TypeImage || it.operands[1] != Operand::Dim(Dim::DimBuffer));
         let gone = |it: &Instruction| {
             it.class.opcode == Op::TypeFunction
                 && it.operands.iter().any(|operand| operand.id_ref_any().is_some_and(|id| self.pointers.contains(&id)))
