@@ -76,7 +76,8 @@ impl Graph<'_> {
                 }
             }
             Access::Buffer { buffer, usage: BufferUse::Texels(format) } => {
-                self.memory_of_buffer(*buffer).texels(*format)?
+                let buffer = self.memory_of_buffer(*buffer);
+                buffer.texels(*format)?.map_or(Descriptor::Buffer(buffer.raw), Descriptor::Texels)
             }
             Access::Buffer { buffer, .. } => Descriptor::Buffer(self.memory_of_buffer(*buffer).raw),
         })

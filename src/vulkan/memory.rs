@@ -10,7 +10,6 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
-use super::descriptors::Descriptor;
 use super::device::Device;
 use super::error::{Called, VulkanError};
 use super::program::ImageDim;
@@ -150,12 +149,12 @@ impl Buffer {
         place.map(|place| place.copy_from_slice(bytes)).is_some()
     }
 
-    /// The whole buffer as texels of `format`.
-    pub(crate) fn texels(&self, format: vk::Format) -> Result<Descriptor, VulkanError> {
+    /// A view of the whole buffer as texels of `format`; `None` where the device reads the buffer itself.
+    pub(crate) fn texels(&self, format: vk::Format) -> Result<Option<vk::BufferView>, VulkanError> {
         let device = &self.memory.device;
         let limit = u64::from(device.limits().max_storage_buffer_range);
         if !device.variants.texels_in_storage {
-            return self.texel_view(format).map(Descriptor::Texels);
+            return self.texel_view(format).map(Some);
         }
         if self.size > limit {
             return Err(VulkanError::TooLarge {
@@ -164,7 +163,7 @@ impl Buffer {
                 limit: limit.to_string(),
             });
         }
-        Ok(Descriptor::Buffer(self.raw))
+        Ok(None)
     }
 
     fn texel_view(&self, format: vk::Format) -> Result<vk::BufferView, VulkanError> {

@@ -4,25 +4,7 @@ use ash::vk;
 use rspirv::dr::{Instruction, Operand};
 use rspirv::spirv::{GlslStd450Op, Op, StorageClass, Word};
 
-use super::Rewritten;
-
-/// The array in place of a texel buffer.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
-    pub(super) element: Word,
-    /// Bytes.
-    pub(super) stride: u32,
-    kind: Kind,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    /// As many floats or words.
-    Components(u32),
-    /// 8 bits each, 0 to 1.
-    Unorm8x4,
-    Half4,
-}
+use super::rewritten::{Kind, Layout, Rewritten};
 
 impl Rewritten {
     pub(super) fn layout(&mut self, format: vk::Format) -> Result<Layout, String> {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use rspirv::dr::{Function, Instruction, Operand};
 use rspirv::spirv::{Op, Word};
 
-use super::Rewritten;
+use super::rewritten::Rewritten;
 
 impl Rewritten {
     /// Replaces all functions by those that the entry points call, directly or not.

@@ -7,15 +7,16 @@
 
 mod fetch;
 mod functions;
+mod rewritten;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
 use ash::vk;
 use rspirv::binary::Assemble as _;
 use rspirv::dr::{self, Instruction, Module, Operand};
 use rspirv::spirv::{Capability, Decoration, Dim, ExecutionMode, Op, StorageClass, Word};
 
-use fetch::Layout;
+use rewritten::Rewritten;
 
 /// Words before the first instruction.
 const HEADER: usize = 5;
@@ -72,58 +73,7 @@ fn texel_pointers(module: &Module) -> HashSet<Word> {
     of_op(Op::TypePointer).filter(to_images).filter_map(|pointer| pointer.result_id).collect()
 }
 
-/// A module on its way.
-struct Rewritten {
-    module: Module,
-    pointers: HashSet<Word>,
-    /// The variables that were texel buffers.
-    variables: HashMap<Word, Layout>,
-    /// Functions as they are called now: the original, the variables that it is given.
-    copies: HashMap<(Word, Vec<Word>), Word>,
-    next_id: Word,
-}
-
 impl Rewritten {
-    fn new(module: Module, pointers: HashSet<Word>) -> Rewritten {
-        let next_id = module.header.as_ref().map_or(0, |header| header.bound);
-        Rewritten { module, pointers, variables: HashMap::new(), copies: HashMap::new(), next_id }
-    }
-
-    fn id(&mut self) -> Word {
-        self.next_id += 1;
-        self.next_id - 1
-    }
-
-    /// The declaration of a type or constant, made if there is none.
-    fn global(&mut self, op: Op, result_type: Option<Word>, operands: Vec<Operand>) -> Word {
-        let known = self
-            .module
-            .types_global_values
-            .iter()
-            .find(|it| it.class.opcode == op && it.result_type == result_type && it.operands == operands);
-        known.and_then(|known| known.result_id).unwrap_or_else(|| self.new_global(op, result_type, operands))
-    }
-
-    /// Aggregates and variables may be declared alike more than once.
-    fn new_global(&mut self, op: Op, result_type: Option<Word>, operands: Vec<Operand>) -> Word {
-        let id = self.id();
-        self.module.types_global_values.push(Instruction::new(op, result_type, Some(id), operands));
-        id
-    }
-
-    fn decorate(&mut self, id: Word, decoration: Decoration, number: Option<u32>) {
-        let operands =
-            [Some(Operand::IdRef(id)), Some(Operand::Decoration(decoration)), number.map(Operand::LiteralBit32)];
-        let operands = operands.into_iter().flatten().collect();
-        self.module.annotations.push(Instruction::new(Op::Decorate, None, None, operands));
-    }
-
-    fn decorate_member(&mut self, id: Word, decoration: Decoration, number: Option<u32>) {
-        let what = [Operand::IdRef(id), Operand::LiteralBit32(0), Operand::Decoration(decoration)];
-        let operands = what.into_iter().chain(number.map(Operand::LiteralBit32)).collect();
-        self.module.annotations.push(Instruction::new(Op::MemberDecorate, None, None, operands));
-    }
-
     /// The texel buffers become blocks of the same names, sets and bindings.
     fn replace_variables(&mut self, formats: &TexelFormats) -> Result<(), String> {
         let is_texels = |it: &Instruction, pointers: &HashSet<Word>| {
