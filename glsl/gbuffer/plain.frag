@@ -9,16 +9,16 @@
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
-layout(location = 2) flat in uint instance_index;
+layout(location = 2) flat in uvec2 drawn;  // geometry/vertex.glsl
 layout(location = 5) flat in vec4 corner_color;
 
 void main() {
-    Instance instance = load_instance(instances, instance_index);
+    Instance instance = load_instance(instances, drawn.x);
     Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, color_of_fragment(instance, vertex_color, corner_color));
     Lobes lobes = lobes_of_material(material, point);
 
-    Normals normals = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing);
+    Normals normals = fragment_normals(instance, vertex_normal, drawn.y, gl_FrontFacing);
     bool front = gl_FrontFacing != ((instance.flags & INSTANCE_FLIPPED) != 0u);
 
     surface = pack_surface(towards_viewer(normals.vertex, normals), normals.geometric, lobes);

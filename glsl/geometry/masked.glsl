@@ -4,7 +4,7 @@
 #include "geometry/material_textures.glsl"
 
 layout(location = 1) in vec4 vertex_color;
-layout(location = 2) flat in uint instance_index;
+layout(location = 2) flat in uvec2 drawn;  // geometry/vertex.glsl
 layout(location = 4) in vec4 texcoord_sets;
 layout(location = 5) flat in vec4 corner_color;
 layout(location = 6) flat in vec4 corner_texcoords;

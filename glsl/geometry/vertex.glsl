@@ -7,12 +7,12 @@ layout(location = 5) in vec4 color;
 
 layout(location = 0) out vec3 vertex_normal;
 layout(location = 1) out vec4 vertex_color;
-layout(location = 2) flat out uint instance_index;
+layout(location = 2) flat out uvec2 drawn;  // the instance and, of a triangle, the first vertex (face_normal)
 layout(location = 5) flat out vec4 corner_color;
 
 void write_vertex() {
     vertex_normal = normal;
     vertex_color = color;
     corner_color = color;
-    instance_index = gl_InstanceIndex;
+    drawn = uvec2(gl_InstanceIndex, gl_VertexIndex);
 }

@@ -140,29 +140,38 @@ vec2 tangent_of_texel(LightView view, vec2 texel) {
     return view.tangent_origin + (texel - vec2(view.rect_origin)) * view.tangent_step;
 }
 
+// Which of two things, both made: what compilers on CPUs make of many branches in a loop takes them minutes (SwiftShader).
+float by_kind(LightView view, float orthographic, float perspective) {
+    return is_orthographic(view) ? orthographic : perspective;
+}
+
+vec3 by_kind(LightView view, vec3 orthographic, vec3 perspective) {
+    return is_orthographic(view) ? orthographic : perspective;
+}
+
 // From the view through a tangent coordinate: of length 1 along `forward` when perspective, the unit `forward` when orthographic.
 vec3 ray_of_tangent(LightView view, vec2 tangent) {
-    return is_orthographic(view) ? view.forward : view.forward + tangent.x * view.right + tangent.y * view.down;
+    return by_kind(view, view.forward, view.forward + tangent.x * view.right + tangent.y * view.down);
 }
 
 // Metres along `forward` from the view's origin, for a depth above 0; orthographic: below 0.
 float linear_depth(LightView view, float depth) {
-    return is_orthographic(view) ? -depth * view.depth_range : view.near / depth;
+    return by_kind(view, -depth * view.depth_range, view.near / depth);
 }
 
 // The same from where light comes from: the perspective view's origin, or an orthographic view's near plane.
 float depth_from_light(LightView view, float depth) {
-    return is_orthographic(view) ? (1.0 - depth) * view.depth_range : view.near / depth;
+    return by_kind(view, (1.0 - depth) * view.depth_range, view.near / depth);
 }
 
 // And back.
 float depth_of_linear(LightView view, float z) {
-    return is_orthographic(view) ? -z / view.depth_range : view.near / z;
+    return by_kind(view, -z / view.depth_range, view.near / z);
 }
 
 vec3 position_of_texel(LightView view, vec2 tangent, float depth) {
     vec3 position = view.origin_rs + ray_of_tangent(view, tangent) * linear_depth(view, depth);
-    return is_orthographic(view) ? position + tangent.x * view.right + tangent.y * view.down : position;
+    return by_kind(view, position + tangent.x * view.right + tangent.y * view.down, position);
 }
 
 // The surface, in m², that one texel sees: (z·step)²/|n·ray| with the ray of ray_of_tangent(), which is d²·Δω/cosθ

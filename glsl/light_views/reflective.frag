@@ -9,15 +9,15 @@
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
-layout(location = 2) flat in uint instance_index;
+layout(location = 2) flat in uvec2 drawn;  // geometry/vertex.glsl
 layout(location = 5) flat in vec4 corner_color;
 
 void main() {
-    Instance instance = load_instance(instances, instance_index);
+    Instance instance = load_instance(instances, drawn.x);
     Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, color_of_fragment(instance, vertex_color, corner_color));
     Lobes lobes = lobes_of_material(material, point);
-    vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
+    vec3 normal = fragment_normals(instance, vertex_normal, drawn.y, gl_FrontFacing).geometric;
 
     LightView view = load_view(views, push.view_index);
     normal_target = pack_direction(normal);

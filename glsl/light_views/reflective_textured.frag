@@ -13,14 +13,14 @@ layout(constant_id = 1) const uint ALPHA_MASK = 0u;
 
 layout(location = 0) in vec3 vertex_normal;
 layout(location = 1) in vec4 vertex_color;
-layout(location = 2) flat in uint instance_index;
+layout(location = 2) flat in uvec2 drawn;  // geometry/vertex.glsl
 layout(location = 4) in vec4 texcoord_sets;
 layout(location = 5) flat in vec4 corner_color;
 layout(location = 6) flat in vec4 corner_texcoords;
 
 void main() {
     Texcoords texcoords = texcoords_of_fragment(texcoord_sets, corner_texcoords);
-    Instance instance = load_instance(instances, instance_index);
+    Instance instance = load_instance(instances, drawn.x);
     Material material = load_material(drawn_materials, instance.material);
     MaterialPoint point = material_factors(material, color_of_fragment(instance, vertex_color, corner_color));
     apply_base_color_texture(point, material, instance.material, texcoords);
@@ -29,7 +29,7 @@ void main() {
     }
     apply_lobe_textures(point, material, instance.material, texcoords);
     Lobes lobes = lobes_of_material(material, point);
-    vec3 normal = fragment_normals(instance, vertex_normal, gl_PrimitiveID, gl_FrontFacing).geometric;
+    vec3 normal = fragment_normals(instance, vertex_normal, drawn.y, gl_FrontFacing).geometric;
 
     LightView view = load_view(views, push.view_index);
     normal_target = pack_direction(normal);

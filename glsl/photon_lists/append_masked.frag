@@ -9,8 +9,8 @@
 layout(location = 0) in float depth;
 
 void main() {
-    Instance instance = load_instance(instances, instance_index);
-    vec3 normal = front_normal(instance, gl_PrimitiveID);
+    Instance instance = load_instance(instances, drawn.x);
+    vec3 normal = front_normal(instance, drawn.y);
     bool there = is_there(instance);
     if (there && is_kept(normal)) {
         append(depth, normal, instance.material);

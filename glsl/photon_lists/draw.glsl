@@ -27,9 +27,9 @@ vec4 clip_position(vec3 position_rs) {
 }
 
 // The triangle's own normal, which points out of the front as its winding has it.
-vec3 front_normal(Instance instance, uint primitive) {
+vec3 front_normal(Instance instance, uint first_vertex) {
     float outside = (instance.flags & INSTANCE_FLIPPED) != 0u ? -1.0 : 1.0;
-    return outside * normalize_or(face_normal(instance, primitive), vec3(0.0, 0.0, 1.0));
+    return outside * normalize_or(face_normal(instance, first_vertex), vec3(0.0, 0.0, 1.0));
 }
 
 // Whether this view sees a surface at least half as well as the best does. Seen edge-on, it covers texels by chance and has no plane there.

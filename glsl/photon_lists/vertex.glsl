@@ -4,11 +4,11 @@
 layout(location = 0) in vec3 position;
 
 layout(location = 0) out float depth;
-layout(location = 2) flat out uint instance_index;
+layout(location = 2) flat out uvec2 drawn;
 
 void main() {
     vec3 position_rs = vec4(position, 1.0) * load_transform(instances, gl_InstanceIndex);
     gl_Position = clip_position(position_rs);
     depth = linear_depth(position_rs);
-    instance_index = gl_InstanceIndex;
+    drawn = uvec2(gl_InstanceIndex, gl_VertexIndex);
 }

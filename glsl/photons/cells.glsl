@@ -22,10 +22,7 @@ float depth_of_neighbor(LightView view, ivec2 texel, ivec2 step, float depth, ve
 
 // The depth at which the light's ray through a tangent coordinate meets the plane of what the texel's middle sees.
 float depth_of_plane(LightView view, vec2 middle, vec2 tangent, float depth, vec3 normal) {
-    vec3 origin = view.origin_rs;
-    if (is_orthographic(view)) {
-        origin += tangent.x * view.right + tangent.y * view.down;
-    }
+    vec3 origin = by_kind(view, view.origin_rs + (tangent.x * view.right + tangent.y * view.down), view.origin_rs);
     float slope = dot(normal, ray_of_tangent(view, tangent));
     float z = dot(normal, position_of_texel(view, middle, depth) - origin) / (abs(slope) > 1e-6 ? slope : 1e-6);
     return depth_of_linear(view, is_orthographic(view) || z > 0.0 ? z : 1e37);

@@ -3,8 +3,9 @@
 use ash::vk;
 
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
+use super::plane_depth;
 use super::scene_data::SceneData;
-use crate::graph::bindings::{ImageRef, SampledImage};
+use crate::graph::bindings::{ImageRef, SampledImage, Uniform};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::scene::Facts;
 use crate::shaders::groups::Surface;
@@ -38,7 +39,7 @@ pub(crate) fn gbuffer(
     let depth = graph.image("gbuffer.depth", vk::Format::D32_SFLOAT, size);
     let surface = graph.image("gbuffer.surface", vk::Format::R32G32B32A32_UINT, size);
     let specular = facts.specular.then(|| graph.image("gbuffer.specular", vk::Format::R16G16B16A16_SFLOAT, size));
-    let buffer = GBuffer {
+    let mut buffer = GBuffer {
         size,
         group: Surface {
             camera: camera.clone(),
@@ -69,9 +70,22 @@ pub(crate) fn gbuffer(
         .color_if(buffer.emission, Some(clear.emission))
         .draw(list);
 
+    draw_textured(graph, data, geometry, &buffer, (&camera, &draw_view));
+    buffer.depth = plane_depth::of_camera(graph, data, geometry, (camera, &draw_view), buffer.depth);
+    buffer.group.depth = buffer.depth.sampled();
+    buffer
+}
+
+fn draw_textured(
+    graph: &mut Graph<'_>,
+    data: &SceneData,
+    geometry: &Geometry,
+    buffer: &GBuffer,
+    (camera, draw_view): (&Uniform<types::Camera>, &[DrawView]),
+) {
     if !data.textured() {
         graph.skip("gbuffer/textured", "no textured surface");
-        return buffer;
+        return;
     }
     // Opaque surfaces first: those with holes are then often hidden, and a shader without `discard` tests depth early.
     for (name, masked) in [("gbuffer/textured", false), ("gbuffer/textured-masked", true)] {
@@ -86,7 +100,7 @@ pub(crate) fn gbuffer(
             textures: data.texture_kinds(takes),
             alpha_mask: u32::from(masked),
         };
-        let list = draw_list(data, Attributes::Textured, &draw_view, takes);
+        let list = draw_list(data, Attributes::Textured, draw_view, takes);
         let pass = graph.raster(name, textured, Attributes::Textured.raster_state(data));
         pass.depth(buffer.depth, None)
             .color(buffer.surface, None)
@@ -94,7 +108,6 @@ pub(crate) fn gbuffer(
             .color_if(buffer.emission, None)
             .draw(list);
     }
-    buffer
 }
 
 /// From where the G-buffer is drawn.

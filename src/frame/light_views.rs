@@ -6,6 +6,7 @@ use ash::vk;
 
 use super::geometry::{Attributes, DrawView, Geometry, draw_list};
 use super::light_set::LightSet;
+use super::plane_depth;
 use super::scene_data::{DrawnInstance, SceneData};
 use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{ClearColor, Dependence, Graph};
@@ -18,7 +19,10 @@ pub(crate) struct LightViews {
     /// As passes bind them; normals and flux are absent unless they are asked for.
     pub(crate) group: groups::LightViews,
     /// Reverse-Z depth of each view in its rectangle.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) depth: ImageRef,
+    /// The same as it was rasterised, to test against.
+    pub(crate) drawn_depth: ImageRef,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) reflective: Option<ReflectiveViews>,
 }
@@ -57,12 +61,15 @@ pub(crate) fn light_views(
         light_normal: SampledImage::of(reflective.map(|views| views.normal)),
         light_flux: SampledImage::of(reflective.map(|views| views.flux)),
     };
-    let made = LightViews { light_count: lights.count() as u32, group, depth, reflective };
+    let mut made = LightViews { light_count: lights.count() as u32, group, depth, drawn_depth: depth, reflective };
     let draw_views = draw_views(set);
     match reflective {
         Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
         None => draw_depth(graph, data, geometry, &made, &draw_views),
     }
+    let drawn = (&made.group, &draw_views[..]);
+    made.depth = plane_depth::of_lights(graph, data, geometry, drawn, depth);
+    made.group.light_depth = made.depth.sampled();
     made
 }
 
@@ -91,7 +98,7 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
     };
     let list = draw_list(data, Attributes::Depth, views, solid);
     let pass = graph.raster("light-views/depth", depth, Attributes::Depth.raster_state(data));
-    pass.note("views", views.len() as u64).depth(made.depth, Some(0.0)).draw(list);
+    pass.note("views", views.len() as u64).depth(made.drawn_depth, Some(0.0)).draw(list);
     if data.drawn.iter().all(solid) {
         graph.skip("light-views/depth-masked", "no surface cut out by its alpha");
         return;
@@ -104,7 +111,7 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
     };
     let list = draw_list(data, Attributes::DepthMasked, views, |drawn| !solid(drawn));
     let pass = graph.raster("light-views/depth-masked", masked, Attributes::DepthMasked.raster_state(data));
-    pass.depth(made.depth, None).draw(list);
+    pass.depth(made.drawn_depth, None).draw(list);
 }
 
 fn draw_reflective(
@@ -123,7 +130,7 @@ fn draw_reflective(
     let list = draw_list(data, Attributes::Plain, views, |drawn| !drawn.textured);
     let pass = graph.raster("light-views/reflective", plain, Attributes::Plain.raster_state(data));
     pass.note("views", views.len() as u64)
-        .depth(made.depth, Some(0.0))
+        .depth(made.drawn_depth, Some(0.0))
         .color(targets.normal, Some(ClearColor::Uint([0; 4])))
         .color(targets.flux, Some(ClearColor::Float([0.0; 4])))
         .draw(list);
@@ -146,6 +153,6 @@ fn draw_reflective(
         };
         let list = draw_list(data, Attributes::ReflectiveTextured, views, takes);
         let pass = graph.raster(name, textured, Attributes::ReflectiveTextured.raster_state(data));
-        pass.depth(made.depth, None).color(targets.normal, None).color(targets.flux, None).draw(list);
+        pass.depth(made.drawn_depth, None).color(targets.normal, None).color(targets.flux, None).draw(list);
     }
 }

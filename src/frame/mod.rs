@@ -15,6 +15,7 @@ pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod materials;
 pub(crate) mod octahedral;
+mod plane_depth;
 pub(crate) mod rays;
 pub(crate) mod scene_data;
 pub(crate) mod textures;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{DMat3, DVec3};
 
-use super::drawn_triangles::drawn_indices;
+use super::drawn_triangles::DrawnTriangles;
 pub(crate) use super::instances::DrawnInstance;
 use super::instances::{Place, area_of, surface_area, upload_instances};
 use super::materials::{cutouts_of, upload_materials};
@@ -154,20 +154,20 @@ impl SceneData {
 impl MeshData {
     fn upload(device: &Arc<Device>, scene: &Scene) -> Result<MeshData, VulkanError> {
         let primitives: Vec<&Primitive> = scene.meshes().iter().flat_map(|mesh| &mesh.primitives).collect();
-        let vertices: usize = primitives.iter().map(|primitive| primitive.positions.len()).sum();
-        let mut indices: Vec<u32> = Vec::new();
+        let drawn: Vec<DrawnTriangles> = primitives.iter().map(|primitive| DrawnTriangles::of(primitive)).collect();
+        let indices: Vec<u32> = drawn.iter().flat_map(|drawn| &drawn.indices).copied().collect();
+        let mut rest = drawn.iter();
         let mut places = Vec::new();
         let (mut first_index, mut vertex_offset) = (0_u32, 0_i32);
         for mesh in scene.meshes() {
             let mut place = |primitive: &Primitive| {
-                let drawn = drawn_indices(primitive);
-                let index_count = narrow(drawn.len())?;
-                indices.extend(drawn);
+                let drawn = rest.next().expect("one for each primitive");
+                let index_count = narrow(drawn.indices.len())?;
                 let bounds = box_of(&primitive.positions);
                 let area = area_of(primitive, DMat3::IDENTITY);
                 let place = Place { first_index, index_count, vertex_offset, bounds, area };
                 first_index = first_index.checked_add(index_count).ok_or_else(too_many)?;
-                vertex_offset = i32::try_from(primitive.positions.len())
+                vertex_offset = i32::try_from(drawn.vertices.len())
                     .ok()
                     .and_then(|count| vertex_offset.checked_add(count))
                     .ok_or_else(too_many)?;
@@ -176,10 +176,11 @@ impl MeshData {
             places.push(mesh.primitives.iter().map(&mut place).collect::<Result<Vec<_>, VulkanError>>()?);
         }
         let shapes = scene.shapes().iter().flatten();
-        let centred = |(primitive, shape): (&&Primitive, &Shape)| {
+        let primitives: Vec<(&Primitive, &DrawnTriangles)> = primitives.into_iter().zip(&drawn).collect();
+        let centred = |((primitive, drawn), shape): (&(&Primitive, &DrawnTriangles), &Shape)| {
             let center = shape.center;
             let from_center = move |position| (DVec3::from(wide(position)) - center).as_vec3().to_array();
-            primitive.positions.iter().copied().map(from_center).collect::<Vec<[f32; 3]>>()
+            drawn.of_vertices(&primitive.positions).map(from_center).collect::<Vec<[f32; 3]>>()
         };
         let positions: Vec<[f32; 3]> = primitives.iter().zip(shapes).flat_map(centred).collect();
         let texel = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
@@ -193,28 +194,20 @@ impl MeshData {
         };
         let normals = gather(
             &primitives,
-            vertices,
             [0, 0, i16::MAX, 0],
             |primitive| primitive.normals.as_deref(),
             |&[x, y, z]| [snorm(x), snorm(y), snorm(z), 0],
         );
         let tangents = gather(
             &primitives,
-            vertices,
             [i16::MAX, 0, 0, i16::MAX],
             |primitive| primitive.tangents.as_deref(),
             |tangent| tangent.map(snorm),
         );
-        let colors = gather(
-            &primitives,
-            vertices,
-            [u8::MAX; 4],
-            |primitive| primitive.colors.as_deref(),
-            |color| color.map(unorm),
-        );
-        let texcoords = |set: usize| {
-            gather(&primitives, vertices, [0.0_f32; 2], |primitive| primitive.texcoords[set].as_deref(), |&uv| uv)
-        };
+        let colors =
+            gather(&primitives, [u8::MAX; 4], |primitive| primitive.colors.as_deref(), |color| color.map(unorm));
+        let texcoords =
+            |set: usize| gather(&primitives, [0.0_f32; 2], |primitive| primitive.texcoords[set].as_deref(), |&uv| uv);
         Ok(MeshData {
             positions: stream("scene.positions", bytemuck::cast_slice(&positions), 12, vertex | texel)?,
             normals: stream("scene.normals", bytemuck::cast_slice(&normals), 8, vertex)?,
@@ -237,20 +230,19 @@ impl MeshData {
 
 /// One element a vertex, or a single `default` if no primitive has the attribute.
 fn gather<'p, S: 'p, T: Copy>(
-    primitives: &[&'p Primitive],
-    vertices: usize,
+    primitives: &[(&'p Primitive, &DrawnTriangles)],
     default: T,
     attribute: impl Fn(&'p Primitive) -> Option<&'p [S]>,
     convert: impl Fn(&S) -> T,
 ) -> Vec<T> {
-    if primitives.iter().all(|primitive| attribute(primitive).is_none()) {
+    if primitives.iter().all(|(primitive, _)| attribute(primitive).is_none()) {
         return vec![default];
     }
-    let mut elements = Vec::with_capacity(vertices);
-    for primitive in primitives {
+    let mut elements = Vec::with_capacity(primitives.iter().map(|(_, drawn)| drawn.vertices.len()).sum());
+    for (primitive, drawn) in primitives {
         match attribute(primitive) {
-            Some(values) => elements.extend(values.iter().map(&convert)),
-            None => elements.extend(std::iter::repeat_n(default, primitive.positions.len())),
+            Some(values) => elements.extend(drawn.vertices.iter().map(|vertex| convert(&values[*vertex as usize]))),
+            None => elements.extend(std::iter::repeat_n(default, drawn.vertices.len())),
         }
     }
     elements

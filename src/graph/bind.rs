@@ -11,7 +11,8 @@ use super::pass::{ClearColor, Pass, Targets};
 use super::resource::Body;
 use crate::vulkan::program::{BindingKind, ImageDim};
 use crate::vulkan::{
-    Attachment, Attachments, Buffer, Descriptor, Image, Pipeline, SubresourceView, TargetFormats, VulkanError,
+    Attachment, Attachments, Buffer, Descriptor, Image, Pipeline, SubresourceView, TargetFormats, TexelFormats,
+    VulkanError,
 };
 
 impl Graph<'_> {
@@ -33,9 +34,12 @@ impl Graph<'_> {
         let program = pass.program.expect("transfers bind nothing");
         let pipelines = &self.store.pipelines;
         let recorder = &self.store.recorder;
+        let texels = texel_formats(pass);
         let pipeline = match (&pass.raster, targets) {
-            (Some((state, _)), Some(targets)) => pipelines.raster(program, &pass.constants, state, targets)?,
-            _ => pipelines.compute(program, &pass.constants)?,
+            (Some((state, _)), Some(targets)) => {
+                pipelines.raster(program, &pass.constants, (state, targets), texels)?
+            }
+            _ => pipelines.compute(program, &pass.constants, texels)?,
         };
         recorder.bind_pipeline(pipeline);
         let mut descriptors = Vec::new();
@@ -72,7 +76,8 @@ impl Graph<'_> {
                 }
             }
             Access::Buffer { buffer, usage: BufferUse::Texels(format) } => {
-                Descriptor::Texels(self.memory_of_buffer(*buffer).texels(*format)?)
+                let buffer = self.memory_of_buffer(*buffer);
+                buffer.texels(*format)?.map_or(Descriptor::Buffer(buffer.raw), Descriptor::Texels)
             }
             Access::Buffer { buffer, .. } => Descriptor::Buffer(self.memory_of_buffer(*buffer).raw),
         })
@@ -123,6 +128,16 @@ impl Graph<'_> {
         }
         Ok(made)
     }
+}
+
+/// What the bindings that are read as texels hold.
+fn texel_formats(pass: &Pass) -> TexelFormats {
+    let bindings = pass.bindings.iter();
+    let texels = bindings.filter_map(|(number, access)| match access {
+        Access::Buffer { usage: BufferUse::Texels(format), .. } => Some((*number, *format)),
+        _ => None,
+    });
+    texels.collect()
 }
 
 pub(super) fn clear_value(value: ClearColor) -> vk::ClearColorValue {

@@ -90,6 +90,11 @@ impl<'s> Graph<'s> {
         self.store.device().traits()
     }
 
+    /// Whether depths are drawn anew by the triangles' planes, since the device rounds vertices coarsely.
+    pub(crate) fn draws_plane_depths(&self) -> bool {
+        self.store.device().variants.plane_depths
+    }
+
     /// The longest side that an image of the device may have.
     pub(crate) fn longest_side(&self) -> u32 {
         self.store.device().limits().max_image_dimension2_d

@@ -96,7 +96,8 @@ fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {
     let (stages, access, writes) = match usage {
         BufferUse::Uniform => (shaders, A::UNIFORM_READ, false),
         BufferUse::Read => (shaders, A::SHADER_STORAGE_READ, false),
-        BufferUse::Texels(_) => (shaders, A::SHADER_SAMPLED_READ, false),
+        // Devices with small texel buffers read storage buffers in their place.
+        BufferUse::Texels(_) => (shaders, A::SHADER_SAMPLED_READ | A::SHADER_STORAGE_READ, false),
         BufferUse::Write | BufferUse::Start => (shaders, A::SHADER_STORAGE_WRITE, true),
         BufferUse::Modify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true),
         BufferUse::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, false),

@@ -43,9 +43,13 @@ impl DescriptorCounts {
         self
     }
 
-    pub(super) fn pool_sizes(&self) -> Vec<vk::DescriptorPoolSize> {
-        let size =
-            |(kind, count): (&vk::DescriptorType, &u32)| vk::DescriptorPoolSize { ty: *kind, descriptor_count: *count };
+    /// `texels_in_storage`: lists that shaders read as texels are storage buffers (variants.rs).
+    pub(super) fn pool_sizes(&self, texels_in_storage: bool) -> Vec<vk::DescriptorPoolSize> {
+        let size = |(kind, count): (&vk::DescriptorType, &u32)| {
+            let moved = texels_in_storage && *kind == vk::DescriptorType::UNIFORM_TEXEL_BUFFER;
+            let ty = if moved { vk::DescriptorType::STORAGE_BUFFER } else { *kind };
+            vk::DescriptorPoolSize { ty, descriptor_count: *count }
+        };
         self.of_kinds.iter().map(size).collect()
     }
 }
@@ -86,9 +90,10 @@ mod tests {
         assert_eq!((wanted.sets(), wanted.of_kinds[&vk::DescriptorType::UNIFORM_TEXEL_BUFFER]), (2, 32));
         let pool = DescriptorCounts::default().grown_to(&wanted);
         assert!(pool.holds(&wanted) && !DescriptorCounts::default().holds(&wanted));
-        let sizes = pool.pool_sizes();
+        let sizes = pool.pool_sizes(false);
         assert_eq!(sizes.len(), 1, "a pool has no size of zero");
         assert!(sizes[0].descriptor_count >= 32);
+        assert_eq!(pool.pool_sizes(true)[0].ty, vk::DescriptorType::STORAGE_BUFFER);
         // As many sets, but of another kind.
         let other: DescriptorCounts =
             [program(const { &[Binding { kind: BindingKind::Storage, ..TEXELS }] })].into_iter().collect();

@@ -64,7 +64,7 @@ fn write_descriptor_set(
                 .dst_set(set)
                 .dst_binding(*binding)
                 .descriptor_count(1)
-                .descriptor_type(kind.descriptor_type());
+                .descriptor_type(device.descriptor_type(*kind));
             match info {
                 Info::Image(info) => write.image_info(info),
                 Info::Texels(views) => write.texel_buffer_view(views),

@@ -104,6 +104,9 @@ impl Buffer {
         location: Location,
     ) -> Result<Buffer, VulkanError> {
         let size = size.max(16).next_multiple_of(4);
+        let texels = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+        let in_storage = device.variants.texels_in_storage && usage.contains(texels);
+        let usage = if in_storage { usage & !texels | vk::BufferUsageFlags::STORAGE_BUFFER } else { usage };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
         let raw = unsafe { device.raw.create_buffer(&info, None) }.called(&format!("vkCreateBuffer for {name}"))?;
@@ -146,8 +149,24 @@ impl Buffer {
         place.map(|place| place.copy_from_slice(bytes)).is_some()
     }
 
-    /// A view of the whole buffer as texels of `format`.
-    pub(crate) fn texels(&self, format: vk::Format) -> Result<vk::BufferView, VulkanError> {
+    /// A view of the whole buffer as texels of `format`; `None` where the device reads the buffer itself.
+    pub(crate) fn texels(&self, format: vk::Format) -> Result<Option<vk::BufferView>, VulkanError> {
+        let device = &self.memory.device;
+        let limit = u64::from(device.limits().max_storage_buffer_range);
+        if !device.variants.texels_in_storage {
+            return self.texel_view(format).map(Some);
+        }
+        if self.size > limit {
+            return Err(VulkanError::TooLarge {
+                what: self.name.clone(),
+                asked: format!("{} bytes", self.size),
+                limit: limit.to_string(),
+            });
+        }
+        Ok(None)
+    }
+
+    fn texel_view(&self, format: vk::Format) -> Result<vk::BufferView, VulkanError> {
         let device = &self.memory.device;
         let mut views = self.views.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(view) = views.get(&format) {

@@ -24,8 +24,10 @@ pub(crate) mod program;
 mod queries;
 mod recorder;
 mod report;
+mod storage_texels;
 mod traits;
 mod transfer;
+mod variants;
 
 pub use crash_markers::CrashMarkers;
 pub(crate) use descriptors::{Descriptor, MaterialSets};
@@ -45,5 +47,6 @@ pub(crate) use queries::Queries;
 pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
 pub(crate) use report::{Survey, devices};
+pub(crate) use storage_texels::TexelFormats;
 pub(crate) use traits::DeviceTraits;
 pub(crate) use transfer::{buffer_with, image_with};

@@ -11,6 +11,7 @@ use ash::vk;
 use super::device::Device;
 use super::error::{Called, VulkanError};
 use super::program::{BindingKind, ImageDim, Program, StageKind};
+use super::storage_texels::{TexelFormats, read_storage};
 
 /// Textures that a material binds (glsl/geometry/material_textures.glsl).
 const MATERIAL_TEXTURES: u32 = 7;
@@ -91,6 +92,8 @@ struct Key {
     program: &'static str,
     constants: Vec<u32>,
     raster: Option<(RasterState, TargetFormats)>,
+    /// Where texels are read from storage buffers.
+    texels: TexelFormats,
 }
 
 #[derive(Clone, Copy)]
@@ -128,18 +131,23 @@ impl Pipelines {
         std::mem::take(&mut *self.spent.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    pub(crate) fn compute(&self, program: &'static Program, constants: &[u32]) -> Result<Pipeline, VulkanError> {
-        self.pipeline(program, constants, None)
+    pub(crate) fn compute(
+        &self,
+        program: &'static Program,
+        constants: &[u32],
+        texels: TexelFormats,
+    ) -> Result<Pipeline, VulkanError> {
+        self.pipeline(program, constants, None, texels)
     }
 
     pub(crate) fn raster(
         &self,
         program: &'static Program,
         constants: &[u32],
-        state: &RasterState,
-        targets: &TargetFormats,
+        (state, targets): (&RasterState, &TargetFormats),
+        texels: TexelFormats,
     ) -> Result<Pipeline, VulkanError> {
-        self.pipeline(program, constants, Some((state.clone(), targets.clone())))
+        self.pipeline(program, constants, Some((state.clone(), targets.clone())), texels)
     }
 
     fn pipeline(
@@ -147,8 +155,10 @@ impl Pipelines {
         program: &'static Program,
         constants: &[u32],
         raster: Option<(RasterState, TargetFormats)>,
+        texels: TexelFormats,
     ) -> Result<Pipeline, VulkanError> {
-        let key = Key { program: program.name, constants: constants.to_vec(), raster };
+        let texels = if self.device.variants.texels_in_storage { texels } else { TexelFormats::new() };
+        let key = Key { program: program.name, constants: constants.to_vec(), raster, texels };
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&key) {
             return Ok(*pipeline);
@@ -158,7 +168,7 @@ impl Pipelines {
             self.device.check_draws()?;
         }
         let layouts = self.layouts(program)?;
-        let raw = self.create(program, constants, layouts.pipeline, key.raster.as_ref())?;
+        let raw = self.create(program, &key, layouts.pipeline)?;
         self.device.set_name(raw, program.name);
         let bind_point =
             if program.is_compute() { vk::PipelineBindPoint::COMPUTE } else { vk::PipelineBindPoint::GRAPHICS };
@@ -201,7 +211,7 @@ impl Pipelines {
                     let layout = vk::DescriptorSetLayoutBinding::default();
                     layout
                         .binding(binding)
-                        .descriptor_type(kind.descriptor_type())
+                        .descriptor_type(self.device.descriptor_type(kind))
                         .descriptor_count(1)
                         .stage_flags(stages)
                 })
@@ -223,9 +233,8 @@ impl Pipelines {
     fn create(
         &self,
         program: &'static Program,
-        constants: &[u32],
+        key: &Key,
         layout: vk::PipelineLayout,
-        raster: Option<&(RasterState, TargetFormats)>,
     ) -> Result<vk::Pipeline, VulkanError> {
         let raw = &self.device.raw;
         let entries: Vec<_> = (0..)
@@ -233,10 +242,14 @@ impl Pipelines {
             .map(|(index, &id)| vk::SpecializationMapEntry { constant_id: id, offset: index * 4, size: 4 })
             .collect();
         let specialisation =
-            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(constants));
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&key.constants));
         let mut modules = Vec::new();
         let mut stages = Vec::new();
-        for (stage, words) in program.stages.iter().zip(program.spirv()?) {
+        for (stage, mut words) in program.stages.iter().zip(program.spirv()?) {
+            if self.device.variants.texels_in_storage {
+                words = read_storage(&words, &key.texels)
+                    .map_err(|error| VulkanError::Shader(format!("{}: {error}", program.name)))?;
+            }
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
             // SAFETY: the code is glslang's, for this version of Vulkan.
             let module = unsafe { raw.create_shader_module(&info, None) }
@@ -246,7 +259,7 @@ impl Pipelines {
                 vk::PipelineShaderStageCreateInfo::default().stage(stage.kind.flag()).module(module).name(c"main");
             stages.push(info.specialization_info(&specialisation));
         }
-        let result = match raster {
+        let result = match &key.raster {
             None => {
                 let info = [vk::ComputePipelineCreateInfo::default().stage(stages[0]).layout(layout)];
                 // SAFETY: stage and layout belong to the same program.

@@ -146,7 +146,6 @@ fn unfit(
         needs("maintenance4", "shaders with a local size by constant", vulkan13.maintenance4),
         needs("scalarBlockLayout", "structs shared with shaders", vulkan12.scalar_block_layout),
         needs("hostQueryReset", "timings", vulkan12.host_query_reset),
-        needs("geometryShader", "flat shading by gl_PrimitiveID in the G-buffer", core.geometry_shader),
         needs("fragmentStoresAndAtomics", "lists built while rasterising", core.fragment_stores_and_atomics),
         needs("drawIndirectFirstInstance", "indirect draws", core.draw_indirect_first_instance),
         needs("independentBlend", "the G-buffer", core.independent_blend),

@@ -45,7 +45,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     let list = draw_list(data, Attributes::Plain, &views, plain);
     graph
         .raster("caustics/photons/choose/views", pass, over_depth(Attributes::Plain, data))
-        .depth_test(lights.depth)
+        .depth_test(lights.drawn_depth)
         .color_fresh(made.surface)
         .color_fresh(made.layer)
         .color(made.mask, Some(ClearColor::Float([0.0; 4])))
@@ -65,7 +65,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     let list = draw_list(data, Attributes::Textured, &views, textured);
     graph
         .raster("caustics/photons/choose/views-textured", pass, over_depth(Attributes::Textured, data))
-        .depth_test(lights.depth)
+        .depth_test(lights.drawn_depth)
         .color(made.surface, None)
         .color(made.layer, None)
         .color(made.mask, None)
