@@ -63,6 +63,8 @@ void main() {
     int first = 3 * int(particle);
     vec3 open = vec3(texelFetch(open_sky, first).x, texelFetch(open_sky, first + 1).x, texelFetch(open_sky, first + 2).x);
     vec3 irradiance = push.sky * open * (PI * push.link_share / float(SKY_STEPS));
+    vec3 from_surfaces = vec3(0.0);
+    vec3 most = vec3(0.0);
     [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
         vec3 light = vec3(0.0);
         vec3 way = vec3(0.0);
@@ -90,13 +92,17 @@ void main() {
             float cosine = -dot(front, to_light);
             cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : max(cosine, 0.0);
             float density = point.density * push.density_scale * float(push.sample_count);
-            light = covered_radiance(triangle, material, point.place)
-                    * (cosine * max(dot(normal, to_light), 0.0) / (max(density, 1e-30) * (distance2 + disc)));
+            vec3 radiance = covered_radiance(triangle, material, point.place);
+            light = radiance * (cosine * max(dot(normal, to_light), 0.0) / (max(density, 1e-30) * (distance2 + disc)));
+            most = max(most, radiance);
         }
         if (max3(light) > 0.0 && dot(face, way) > 0.0 && !is_occluded(origin, way, end)) {
-            irradiance += light;
+            from_surfaces += i < push.light_count ? vec3(0.0) : light;
+            irradiance += i < push.light_count ? light : vec3(0.0);
         }
     }
+    // No surface receives more than a half space of the radiance: next to an emitter single points would give far more.
+    irradiance += min(from_surfaces, PI * most);
     vec3 received = irradiance * area;
     if (HAS_GLINTS != 0u) {
         received += vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step;

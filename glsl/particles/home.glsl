@@ -1,11 +1,11 @@
 // Which particle stands for a point of a surface: the nearest one whose normal agrees, off the tangent plane counting more, to which a short segment
-// above the surface is free (one floor runs under many walls). The segment is tested only where some particle lies above the tangent plane: elsewhere
-// nothing that is as large as the particles' spacing stands in between.
+// above the surface is free (one floor runs under many walls). The segment is tested only where something lies above the particle's tangent plane (crowd.comp).
 #ifndef PARTICLES_HOME
 #define PARTICLES_HOME
 
 #include "groups/particles.glsl"
 #include "lib/octahedral.glsl"
+#include "particles/crowded.glsl"
 #include "particles/grid.glsl"
 
 const uint NO_PARTICLE = 0xFFFFFFFFu;
@@ -14,7 +14,6 @@ const float SIMILAR = 0.7;
 const float SIMILAR_AT_LEAST = 0.1;
 const float NOT_OPPOSITE = -0.5;
 // Shares of the spacing.
-const float ABOVE = 0.1;
 const float LIFT = 0.15;
 // What a distance across the tangent plane counts for, squared.
 const float ACROSS = 8.0;
@@ -23,7 +22,7 @@ const int ATTEMPTS = 4;
 struct Neighbour {
     uint particle;
     float key;     // m²
-    bool crowded;  // something lies above the tangent plane nearby
+    bool crowded;
 };
 
 float spacing_of_particles() {
@@ -34,28 +33,32 @@ vec3 position_of_particle(uint particle) {
     return uintBitsToFloat(texelFetch(particle_places, int(particle)).xyz);
 }
 
-// The nearest one beyond `after` in the cells `low` to `high`.
-Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float after, float similar, int reach) {
+// The nearest one beyond `after` in the eight cells around the point, or, if `wide`, in 27. Of the eight those are left out that are farther than what was found.
+Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float after, float similar, bool wide) {
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
-    ivec3 low = reach == 0 ? cell_of(position - CELL_SPACINGS * 0.5 * spacing, spacing) : cell_of(position, spacing) - reach;
-    int side = reach == 0 ? 2 : 2 * reach + 1;
+    ivec3 own = cell_of(position, spacing);
+    // Towards which neighbours, and how far it is to them.
+    vec3 within = position - vec3(own) * (CELL_SPACINGS * spacing);
+    bvec3 upwards = greaterThan(within, vec3(0.5 * CELL_SPACINGS * spacing));
+    vec3 away = mix(within, CELL_SPACINGS * spacing - within, upwards);
+    ivec3 towards = mix(ivec3(-1), ivec3(1), upwards);
     Neighbour nearest = Neighbour(NO_PARTICLE, 3e38, false);
-    [[dont_unroll]] for (int number = 0; number < side * side * side; ++number) {
-        ivec3 cell = low + ivec3(number % side, number / side % side, number / (side * side));
-        int bucket = int(bucket_of(cell, bucket_count));
+    int count = wide ? 27 : 8;
+    [[dont_unroll]] for (int number = 0; number < count; ++number) {
+        ivec3 place = wide ? ivec3(number % 3, number / 3 % 3, number / 9) - 1 : ivec3(number & 1, number >> 1 & 1, number >> 2) * towards;
+        vec3 gap = wide ? vec3(0.0) : away * vec3(abs(place));
+        if (dot(gap, gap) > nearest.key) {
+            continue;
+        }
+        int bucket = int(bucket_of(own + place, bucket_count));
         uint end = texelFetch(particle_starts, bucket + 1).x;
         [[dont_unroll]] for (uint particle = texelFetch(particle_starts, bucket).x; particle < end; ++particle) {
-            uvec4 place = texelFetch(particle_places, int(particle));
-            vec3 way = uintBitsToFloat(place.xyz) - position;
+            uvec4 record = texelFetch(particle_places, int(particle));
+            vec3 way = uintBitsToFloat(record.xyz) - position;
             float above = dot(way, normal);
-            float distance2 = dot(way, way);
-            // Buckets hold other cells too.
-            bool near = distance2 < 9.0 * spacing * spacing;
-            nearest.crowded = nearest.crowded || (near && above > ABOVE * spacing);
-            float key = distance2 + ACROSS * above * above;
-            if (key < nearest.key && key > after && dot(unpack_direction(place.w), normal) > similar) {
-                nearest.particle = particle;
-                nearest.key = key;
+            float key = dot(way, way) + ACROSS * above * above;
+            if (key < nearest.key && key > after && dot(unpack_direction(record.w), normal) > similar) {
+                nearest = Neighbour(particle, key, is_crowded(record.w));
             }
         }
     }
@@ -75,18 +78,18 @@ bool sees_particle(vec3 position, vec3 normal, uint particle, float spacing) {
 uint home_among(vec3 position, vec3 normal, float least_similar, bool any) {
     float spacing = spacing_of_particles();
     float after = -1.0;
-    int reach = 0;
+    bool wide = false;
     uint nearest = NO_PARTICLE;
     [[dont_unroll]] for (int attempt = 0; attempt < 2 * ATTEMPTS; ++attempt) {
-        Neighbour found = nearest_particle(position, normal, spacing, after, reach == 0 ? SIMILAR : least_similar, reach);
+        Neighbour found = nearest_particle(position, normal, spacing, after, wide ? least_similar : SIMILAR, wide);
         bool none = found.particle == NO_PARTICLE;
-        if (!none && ((reach == 0 && !found.crowded) || sees_particle(position, normal, found.particle, spacing))) {
+        if (!none && ((!wide && !found.crowded) || sees_particle(position, normal, found.particle, spacing))) {
             return found.particle;
         }
         nearest = nearest == NO_PARTICLE && any ? found.particle : nearest;
         after = found.key;
-        if (reach == 0 && (none || attempt == ATTEMPTS - 1)) {
-            reach = 1;
+        if (!wide && (none || attempt == ATTEMPTS - 1)) {
+            wide = true;
             after = -1.0;
         } else if (none) {
             return nearest;

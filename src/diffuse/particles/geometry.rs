@@ -9,8 +9,8 @@ use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::groups::{Lobes, Particles, SceneRays};
 use crate::shaders::particles::{
-    AreaSums, AreaSumsPush, Areas, AreasPush, Catch, CatchPush, Fill, FillPush, Links, LinksPush, List, ListPush,
-    Matter, MatterPush, Place, PlacePush, Sort, SortPush, Starts, StartsPush,
+    AreaSums, AreaSumsPush, Areas, AreasPush, Catch, CatchPush, Crowd, CrowdPush, Fill, FillPush, Links, LinksPush,
+    List, ListPush, Matter, MatterPush, Place, PlacePush, Sort, SortPush, Starts, StartsPush,
 };
 
 /// Points by which the area of a particle is measured, for each.
@@ -122,18 +122,27 @@ impl ParticleSpace {
             push: FillPush { particle_count },
         };
         graph.pass("diffuse/particles/place/fill", pass).threads(threads);
-        let places = graph.buffer::<[u32; 4]>("particles.places", particle_count as usize);
+        let sorted = graph.buffer::<[u32; 4]>("particles.sorted", particle_count as usize);
         let faces = graph.buffer::<u32>("particles.faces", particle_count as usize);
         let pass = Sort {
             order: order.texels(WORD),
             starts: starts.texels(WORD),
             places: unsorted.texels(WORDS4),
             faces: unsorted_faces.texels(WORDS2),
-            sorted_places: places.write(),
+            sorted_places: sorted.write(),
             sorted_faces: faces.write(),
             push: SortPush { particle_count },
         };
         graph.pass("diffuse/particles/place/sort", pass).threads(threads);
+        let places = graph.buffer::<[u32; 4]>("particles.places", particle_count as usize);
+        let pass = Crowd {
+            sorted_places: sorted.texels(WORDS4),
+            starts: starts.texels(WORD),
+            spacing_of_all: spacing.texels(FLOAT),
+            places: places.write(),
+            push: CrowdPush { particle_count },
+        };
+        graph.pass("diffuse/particles/place/crowd", pass).threads(threads);
         let group = Particles {
             particle_places: places.texels(WORDS4),
             particle_starts: starts.texels(WORD),
