@@ -4,9 +4,9 @@
 
 #include "groups/scene_rays.glsl"
 #include "lib/lobes.glsl"
-#include "lib/octahedral.glsl"
 #include "lib/ray_offset.glsl"
 #include "particles/albedo.glsl"
+#include "particles/shading_normal.glsl"
 
 // Specular events in a row at most.
 const uint MOST_SPECULAR = 8u;
@@ -25,20 +25,12 @@ Passage pass_on(Triangle triangle, Material material, vec2 place, vec3 met, vec3
     vec3 face = front_normal(triangle);
     bool front = dot(face, way) < 0.0;
     vec3 side = front ? face : -face;
-    vec3 normal = side;
-    if (!triangle.flat_normals) {
-        vec3 weights = vec3(1.0 - place.x - place.y, place);
-        vec3 smooth_normal = normalize_or(
-            weights.x * unpack_direction(triangle.normals.x) + weights.y * unpack_direction(triangle.normals.y)
-                + weights.z * unpack_direction(triangle.normals.z), face);
-        normal = dot(smooth_normal, side) < 0.0 ? -smooth_normal : smooth_normal;
-    }
     vec3 transmission = point.base_color.rgb * ((1.0 - point.metallic) * point.transmission);
     vec4 medium = TRANSMISSIVE != 0u ? texelFetch(media, int(triangle.material)) : vec4(0.0);
     float relative_ior = TRANSMISSIVE != 0u && max3(transmission) > 0.0 && medium.w > 0.0 ? (front ? material.ior : 1.0 / material.ior) : 1.0;
     Matter matter = Matter(
         lobes.diffuse_albedo, lobes.f0, lobes.f90, max(lobes.roughness * lobes.roughness, MINIMUM_ALPHA), transmission, relative_ior);
-    Frame frame = frame_around(normal);
+    Frame frame = frame_around(shading_normal(triangle, place, side));
     vec3 viewer = to_local(frame, -way);
     viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
     float matt = lobe_shares(matter, viewer.z).x;

@@ -4,9 +4,9 @@
 #define PARTICLES_SURFACE_POINTS
 
 #include "groups/scene_rays.glsl"
-#include "lib/octahedral.glsl"
 #include "lib/sobol.glsl"
 #include "lib/traced_scene.glsl"
+#include "particles/shading_normal.glsl"
 
 struct SurfacePoint {
     Triangle triangle;
@@ -58,14 +58,7 @@ SurfacePoint surface_point(samplerBuffer sums, uint triangle_count, uint number,
     vec3 front = front_normal(point.triangle);
     point.position = point_of_triangle(point.triangle, point.place, front);
     point.face = back ? -front : front;
-    point.normal = point.face;
-    if (!point.triangle.flat_normals) {
-        vec3 weights = vec3(1.0 - point.place.x - point.place.y, point.place);
-        vec3 smooth_normal = normalize_or(
-            weights.x * unpack_direction(point.triangle.normals.x) + weights.y * unpack_direction(point.triangle.normals.y)
-                + weights.z * unpack_direction(point.triangle.normals.z), front);
-        point.normal = dot(smooth_normal, point.face) < 0.0 ? -smooth_normal : smooth_normal;
-    }
+    point.normal = shading_normal(point.triangle, point.place, point.face);
     return point;
 }
 
