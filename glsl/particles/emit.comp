@@ -11,14 +11,16 @@
 #include "lib/octahedral.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
-#include "particles/link.glsl"
+#include "particles/arrivals.glsl"
 
 // The flux that one particle receives from the lights, W (Chang et al. 4.2.1, for every kind of light):
 //
-//   φ = ΔA·( Σ_punctual I(ω)·cosθ/(d² + ΔA/π)·V + 1/K Σ_k L_e(y_k)·cosθ·cosθ_k/((d² + ΔA/π)·p(y_k))·V + π·L_sky·s )
+//   φ = ΔA·( Σ_punctual I(ω)·cosθ/(d² + ΔA/π)·V + Σ_k L_e(y_k)·cosθ·V/(K·p_k + M·cosθ/π) + π/M Σ_links w·L_e + π·L_sky·s )
 //
-// d² + ΔA/π in place of d²: the particle is a disc, which takes no more than a half space of light. y_k: points of emissive surfaces drawn by power with
-// density p; s: what share of the sky's light the particle's links see, which are spread by the cosine, in mirrors and through glass too.
+// d² + ΔA/π in place of d²: the particle is a disc, which takes no more than a half space of light. y_k: K points of emissive surfaces drawn by power with
+// density p_k (1/sr, seen from the particle), combined by the balance heuristic with those that the particle's M links end on, with the density cosθ/π and
+// weight w = M·cosθ/π/(K·p + M·cosθ/π) (links.comp): bounded however near the emitter is. s: what share of the sky's light the links see, in mirrors and
+// through glass too.
 // To this comes what photons bring off mirrors and through glass (glints.comp).
 
 layout(local_size_x = 64) in;
@@ -28,8 +30,8 @@ layout(constant_id = 0) const uint HAS_GLINTS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) uniform samplerBuffer matter;
-layout(set = 0, binding = 2) uniform usamplerBuffer open_sky;  // steps: red, green, blue one by one
-layout(set = 0, binding = 3) readonly buffer Glints { uint glints[]; };  // steps likewise
+layout(set = 0, binding = 2) uniform usamplerBuffer arrivals;
+layout(set = 0, binding = 3) readonly buffer Glints { uint glints[]; };  // steps: red, green, blue one by one
 layout(set = 0, binding = 4) writeonly buffer Flux { vec4 flux[]; };
 
 layout(push_constant, scalar) uniform Push {
@@ -38,10 +40,27 @@ layout(push_constant, scalar) uniform Push {
     uint emitter_count;
     uint sample_count;
     float density_scale;
-    float link_share;   // 1 / links of a particle
+    float links;              // of a particle
     float watts_a_step;
-    vec3 sky;           // W/(m²·sr)
+    float greatest_radiance;  // of any emissive surface, W/(m²·sr)
+    vec3 sky;                 // W/(m²·sr)
 } push;
+
+// The irradiance that links bring, W/m².
+vec3 irradiance_by_links(uint particle) {
+    int first = int(particle * arrival_words());
+    uvec3 steps = uvec3(texelFetch(arrivals, first).x, texelFetch(arrivals, first + 1).x, texelFetch(arrivals, first + 2).x);
+    vec3 radiance = push.sky * vec3(steps) / float(SKY_STEPS);
+    if (HAS_EMITTERS != 0u) {
+        first += int(EMISSION_WORD);
+        for (int channel = 0; channel < 3; ++channel) {
+            float whole = float(texelFetch(arrivals, first + 2 * channel).x);
+            float parts = float(texelFetch(arrivals, first + 2 * channel + 1).x);
+            radiance[channel] += push.greatest_radiance * (whole + parts / EMISSION_STEPS) / EMISSION_STEPS;
+        }
+    }
+    return radiance * (PI / push.links);
+}
 
 void main() {
     uint particle = gl_GlobalInvocationID.x;
@@ -60,11 +79,7 @@ void main() {
     vec3 origin = offset_ray_origin(position, face);
     float disc = area * INVERSE_PI;
 
-    int first = 3 * int(particle);
-    vec3 open = vec3(texelFetch(open_sky, first).x, texelFetch(open_sky, first + 1).x, texelFetch(open_sky, first + 2).x);
-    vec3 irradiance = push.sky * open * (PI * push.link_share / float(SKY_STEPS));
-    vec3 from_surfaces = vec3(0.0);
-    vec3 most = vec3(0.0);
+    vec3 irradiance = irradiance_by_links(particle);
     [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
         vec3 light = vec3(0.0);
         vec3 way = vec3(0.0);
@@ -91,20 +106,18 @@ void main() {
             vec3 to_light = way * inversesqrt(distance2);
             float cosine = -dot(front, to_light);
             cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : max(cosine, 0.0);
-            float density = point.density * push.density_scale * float(push.sample_count);
-            vec3 radiance = covered_radiance(triangle, material, point.place);
-            light = radiance * (cosine * max(dot(normal, to_light), 0.0) / (max(density, 1e-30) * (distance2 + disc)));
-            most = max(most, radiance);
+            float received = max(dot(normal, to_light), 0.0);
+            float density = point.density * push.density_scale * float(push.sample_count) * distance2;
+            float both = density + push.links * received * cosine * INVERSE_PI;
+            light = covered_radiance(triangle, material, point.place) * (cosine * received / max(both, 1e-30));
         }
         if (max3(light) > 0.0 && dot(face, way) > 0.0 && !is_occluded(origin, way, end)) {
-            from_surfaces += i < push.light_count ? vec3(0.0) : light;
-            irradiance += i < push.light_count ? light : vec3(0.0);
+            irradiance += light;
         }
     }
-    // No surface receives more than a half space of the radiance: next to an emitter single points would give far more.
-    irradiance += min(from_surfaces, PI * most);
     vec3 received = irradiance * area;
     if (HAS_GLINTS != 0u) {
+        uint first = 3u * particle;
         received += vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step;
     }
     flux[particle] = vec4(is_finite(received) ? received : vec3(0.0), 0.0);

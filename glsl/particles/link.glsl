@@ -7,9 +7,6 @@
 const uint ESCAPED_LINK = 0xFFFFFFFFu;  // in the sky
 const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
 
-// Of a link's share of the sky.
-const uint SKY_STEPS = 1024u;
-
 bool ends_on_particle(uint link) {
     return link < DARK_LINK;
 }

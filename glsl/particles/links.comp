@@ -4,9 +4,12 @@
 #include "groups/scene_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
+#include "lib/emissive_cells.glsl"
+#include "lib/emissive_points.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
+#include "particles/arrivals.glsl"
 #include "particles/home.glsl"
 #include "particles/link.glsl"
 #include "particles/specular.glsl"
@@ -14,13 +17,16 @@
 // One link of one particle: the particle that stands for what a ray meets, sent in one of n×n strata of the hemisphere by the cosine. Of each square
 // of strata one link also serves for scattering: stratified as well, by fewer. Scattering follows mirrors and glass to the first diffuse surface (L D S D
 // belongs to the flux of particles); gathering does not: what it would find there is a caustic.
+//
+// Links that escape or end on an emitter also bring its light to the particle's flux (arrivals.glsl); that of emitters is weighted against the points that
+// emit.comp draws, by the balance heuristic (Veach & Guibas 1995): next to a lamp links find it, far from it points do.
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) writeonly buffer Links { uint links[]; };
 layout(set = 0, binding = 2) buffer ScatterLinks { uint scatter_links[]; };
-layout(set = 0, binding = 3) buffer Sky { uint sky[]; };  // links of each particle that meet nothing, and what mirrors and glass leave of others
+layout(set = 0, binding = 3) buffer Arrivals { uint arrivals[]; };
 layout(set = 0, binding = 4) buffer Lost { uint lost[]; };
 
 layout(push_constant, scalar) uniform Push {
@@ -28,6 +34,9 @@ layout(push_constant, scalar) uniform Push {
     uint count;         // particles of the chunk
     uint gather_side;   // strata a side
     uint scatter_side;
+    float density_scale;      // from a point's density among all lights to that among emissive triangles
+    float emitter_samples;    // points of emissive surfaces that emit.comp draws for each particle
+    float greatest_radiance;  // of any emissive surface, W/(m²·sr)
 } push;
 
 // Where a link ends: what stands for the surface that its ray meets first, and for the first diffuse one behind mirrors and glass.
@@ -36,7 +45,32 @@ struct End {
     uint beyond;
 };
 
-End trace_link(uint particle, vec3 position, vec3 face, vec3 direction, uint seed) {
+void add_sky(uint particle, vec3 share) {
+    uvec3 steps = uvec3(min(share, vec3(4.0)) * SKY_STEPS + 0.5);
+    uint first = particle * arrival_words();
+    atomicAdd(arrivals[first], steps.r);
+    atomicAdd(arrivals[first + 1u], steps.g);
+    atomicAdd(arrivals[first + 2u], steps.b);
+}
+
+// What the link brings of the light of the surface that it meets. `density`: of the link's direction times their number, 1/sr.
+void add_emission(uint particle, Triangle triangle, Material material, Hit hit, vec3 direction, float density) {
+    float cosine = -dot(front_normal(triangle), direction);
+    cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : cosine;
+    if (triangle.light_density <= 0.0 || cosine <= 0.0) {
+        return;
+    }
+    float points = emissive_density(triangle, hit.barycentric) * push.density_scale * push.emitter_samples * hit.distance * hit.distance / max(cosine, 1e-9);
+    vec3 radiance = emissive_radiance(triangle, material, hit.barycentric) / push.greatest_radiance;
+    vec3 share = clamp(radiance * (density / (density + points)), 0.0, 1.0) * EMISSION_STEPS;
+    uint first = particle * arrival_words() + EMISSION_WORD;
+    for (uint channel = 0u; channel < 3u; ++channel) {
+        atomicAdd(arrivals[first + 2u * channel], uint(share[channel]));
+        atomicAdd(arrivals[first + 2u * channel + 1u], uint(fract(share[channel]) * EMISSION_STEPS));
+    }
+}
+
+End trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direction, uint seed) {
     End end = End(DARK_LINK, DARK_LINK);
     if (dot(direction, face) <= 0.0) {
         return end;
@@ -46,19 +80,17 @@ End trace_link(uint particle, vec3 position, vec3 face, vec3 direction, uint see
     [[dont_unroll]] for (uint event = 0u; event <= MOST_SPECULAR; ++event) {
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
-            if (event == 0u) {
-                return End(ESCAPED_LINK, ESCAPED_LINK);
-            }
-            uvec3 share = uvec3(min(carried, vec3(4.0)) * SKY_STEPS + 0.5);
-            atomicAdd(sky[3u * particle], share.r);
-            atomicAdd(sky[3u * particle + 1u], share.g);
-            atomicAdd(sky[3u * particle + 2u], share.b);
-            return end;
+            add_sky(particle, carried);
+            return event == 0u ? End(ESCAPED_LINK, ESCAPED_LINK) : end;
         }
         Triangle triangle = load_triangle(triangles, hit.triangle);
         Material material = load_material(materials, triangle.material);
         vec3 front = front_normal(triangle);
         vec3 met = point_of_hit(triangle, hit.barycentric, front, origin, hit.distance * direction);
+        if (HAS_EMITTERS != 0u && event == 0u) {
+            float density = float(push.gather_side * push.gather_side) * max(dot(normal, direction), 0.0) * INVERSE_PI;
+            add_emission(particle, triangle, material, hit, direction, density);
+        }
         if (has_diffuse_lobe(material)) {
             // Behind mirrors the link stands for what they let through, or for nothing.
             bool arrives = event == 0u || float(seed_of(seed, 9u) >> 8) / 16777216.0 < dot(carried, vec3(1.0 / 3.0));
@@ -101,14 +133,10 @@ void main() {
     uint random = seed_of(particle, link);
     vec2 jitter = vec2(random & 0xFFFFu, random >> 16) / 65536.0;
     vec2 square = (vec2(stratum) + jitter) / float(push.gather_side);
-    vec3 direction = to_world(frame_around(unpack_direction(place.w)), cosine_direction(square));
-    End end = trace_link(particle, uintBitsToFloat(place.xyz), face, direction, random);
+    vec3 normal = unpack_direction(place.w);
+    vec3 direction = to_world(frame_around(normal), cosine_direction(square));
+    End end = trace_link(particle, uintBitsToFloat(place.xyz), normal, face, direction, random);
     links[own * link_count + link] = end.first;
-    if (end.first == ESCAPED_LINK) {
-        atomicAdd(sky[3u * particle], SKY_STEPS);
-        atomicAdd(sky[3u * particle + 1u], SKY_STEPS);
-        atomicAdd(sky[3u * particle + 2u], SKY_STEPS);
-    }
     uint block = push.gather_side / push.scatter_side;
     uvec2 scatter = stratum / block;
     uint chosen = seed_of(seed_of(particle, 0x5CA77E12u), scatter.y * push.scatter_side + scatter.x) % (block * block);

@@ -48,8 +48,8 @@ pub(super) struct ParticleSpace {
     pub(super) matter: BufferRef<[f32; 4]>,
     pub(super) chunks: Vec<Chunk>,
     pub(super) scatter_links: BufferRef<u32>,
-    /// How much of the sky the links of each see, red, green and blue one by one, in steps.
-    pub(super) sky: BufferRef<u32>,
+    /// What the links of each bring of the sky's and of emissive surfaces' light, as in glsl/particles/arrivals.glsl.
+    pub(super) arrivals: BufferRef<u32>,
     /// Neighbours of each, in a fixed room.
     pub(super) lists: BufferRef<u32>,
     pub(super) list_lengths: BufferRef<u32>,
@@ -153,11 +153,11 @@ impl ParticleSpace {
         let lobes = lobes_of(scene);
         let space = Unlinked { lobes, particle_count, triangle_count, rays, group, faces, lost };
         let matter = space.measure(graph, sums);
-        let (chunks, scatter_links, sky) = space.link(graph, options);
+        let (chunks, scatter_links, arrivals) = space.link(graph, scene, options);
         let (lists, list_lengths) = space.list(graph);
         let Unlinked { rays, group, .. } = space;
         let count = particle_count;
-        ParticleSpace { count, rays, group, faces, matter, chunks, scatter_links, sky, lists, list_lengths }
+        ParticleSpace { count, rays, group, faces, matter, chunks, scatter_links, arrivals, lists, list_lengths }
     }
 }
 
@@ -205,14 +205,21 @@ impl Unlinked {
         matter
     }
 
-    fn link(&self, graph: &mut Graph<'_>, options: &ParticlesOptions) -> (Vec<Chunk>, BufferRef<u32>, BufferRef<u32>) {
+    fn link(
+        &self,
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        options: &ParticlesOptions,
+    ) -> (Vec<Chunk>, BufferRef<u32>, BufferRef<u32>) {
         let (gather_side, scatter_side) = (options.gather, options.scatter);
         let link_count = gather_side * gather_side;
         let particle_count = self.particle_count;
         let scatter_links = (particle_count * scatter_side * scatter_side) as usize;
         let scatter_links = graph.buffer::<u32>("particles.scatter_links", scatter_links);
-        let sky = graph.buffer::<u32>("particles.sky", 3 * particle_count as usize);
-        graph.fill_buffer("diffuse/particles/link/clear", sky, 0);
+        let emits = scene.emissive_count > 0;
+        let arrival_words = if emits { 9 } else { 3 };
+        let arrivals = graph.buffer::<u32>("particles.arrivals", arrival_words * particle_count as usize);
+        graph.fill_buffer("diffuse/particles/link/clear", arrivals, 0);
         let firsts = (0..particle_count).step_by(CHUNK as usize);
         let chunks: Vec<Chunk> = (0..)
             .zip(firsts)
@@ -221,6 +228,7 @@ impl Unlinked {
                 let links = graph.buffer::<u32>(&format!("particles.links.{number}"), (count * link_count) as usize);
                 let pass = Links {
                     scene_rays: self.rays.clone(),
+                    scene_lights: scene.lights(graph),
                     particles: self.group.clone(),
                     particle_faces: self.faces.texels(WORD),
                     links: links.write(),
@@ -229,10 +237,19 @@ impl Unlinked {
                     } else {
                         scatter_links.read_write()
                     },
-                    sky: sky.read_write(),
+                    arrivals: arrivals.read_write(),
+                    has_emitters: u32::from(emits),
                     lobes: self.lobes.clone(),
                     lost: self.lost.read_write(),
-                    push: LinksPush { first, count, gather_side, scatter_side },
+                    push: LinksPush {
+                        first,
+                        count,
+                        gather_side,
+                        scatter_side,
+                        density_scale: scene.emissive_density_scale,
+                        emitter_samples: options.emitter_samples as f32,
+                        greatest_radiance: scene.greatest_radiance,
+                    },
                 };
                 let pass = graph.pass(&format!("diffuse/particles/link/trace.{number}"), pass);
                 let pass = pass.note("rays", u64::from(count) * u64::from(link_count)).count("lost", self.lost, 1);
@@ -240,7 +257,7 @@ impl Unlinked {
                 Chunk { first, count, links }
             })
             .collect();
-        (chunks, scatter_links, sky)
+        (chunks, scatter_links, arrivals)
     }
 
     /// The lists, each of a fixed room, and how long they are.

@@ -64,6 +64,8 @@ pub(crate) struct TracedScene {
     pub(crate) emissive_count: u32,
     /// From a triangle's density among all lights to that among emissive triangles.
     pub(crate) emissive_density_scale: f32,
+    /// Of any emissive surface, in the brightest channel, W/(m² sr).
+    pub(crate) greatest_radiance: f32,
     /// Whether lights may send out paths of their own.
     pub(crate) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
@@ -181,6 +183,7 @@ impl TracedScene {
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
+            greatest_radiance: scene.materials().iter().flat_map(|material| material.emissive).fold(0.0, f32::max),
             light_paths: facts.glossy && !emitters.is_empty(),
             power,
             target_shares,
