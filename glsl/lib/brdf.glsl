@@ -108,10 +108,13 @@ vec3 surface_brdf(Surface surface, vec3 to_light, vec3 to_eye) {
 }
 
 // The share of diffuse irradiance that the diffuse lobe sends back when neither direction is known: what a virtual point
-// light reflects, and what a receiver of indirect light answers with. The specular layer above takes its mean over the
-// cosine-weighted hemisphere, ∫ F(μ)·2μ dμ = f0 + (f90 − f0)/21, in place of F(v·h); the brightest channel's, as the BRDF does.
+// light reflects, and what a receiver of indirect light answers with. The specular layer above takes the mean of F(v·h) over both
+// directions, cosine-weighted: f0 + (f90 − f0)·<(1 − v·h)⁵>, <(1 − v·h)⁵> = 0.003685, since the half vector is never far from either
+// direction; the brightest channel's, as the BRDF does.
+const float MEAN_HALF_FRESNEL = 0.003685;
+
 vec3 indirect_diffuse_albedo(vec3 diffuse_albedo, vec3 f0, float f90) {
-    float mean_fresnel = max3(f0 + (vec3(f90) - f0) / 21.0);
+    float mean_fresnel = max3(mix(f0, vec3(f90), MEAN_HALF_FRESNEL));
     return diffuse_albedo * (1.0 - mean_fresnel);
 }
 

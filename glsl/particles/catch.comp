@@ -4,6 +4,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
+#include "lib/ray_offset.glsl"
 #include "particles/albedo.glsl"
 #include "particles/home.glsl"
 #include "particles/surface_points.glsl"
@@ -36,7 +37,11 @@ void main() {
     if (ALPHA_MASKS != 0u && material.alpha_cutoff >= 0.0 && !is_covered(point.triangle, material, point.place)) {
         return;
     }
-    uint home = home_of(point.position, point.normal);
+    float spacing = spacing_of_particles();
+    vec3 start = offset_ray_origin(point.position, point.face);
+    Hit above = closest_hit(start, point.normal, 2.0 * LIFT * spacing);
+    float free = above.triangle == NO_TRIANGLE ? 3e38 : above.distance;
+    uint home = home_of(point.position, point.normal, lifted(start, point.normal, point.normal, free, spacing));
     if (home == NO_PARTICLE) {
         atomicAdd(lost[0], 1u);
         return;

@@ -1,24 +1,33 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/scene_rays.glsl"
+#include "lib/cutouts.glsl"
+#include "lib/bvh.glsl"
 #include "lib/octahedral.glsl"
+#include "lib/ray_offset.glsl"
 #include "lib/vectors.glsl"
-#include "particles/crowded.glsl"
 #include "particles/grid.glsl"
+#include "particles/headroom.glsl"
 
-// Notes of one particle whether another one lies above its tangent plane nearby: where none does, nothing that is as large as the particles' spacing stands
-// between it and the points that it stands for.
+// Notes of one particle whether something stands near it, and how much is free above it (headroom.glsl): another one above its tangent plane, or the
+// underside of something, however low. Where neither is, nothing that is as large as the particles' spacing stands between it and the points that it stands for.
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer sorted_places;
 layout(set = 0, binding = 1) uniform usamplerBuffer starts;
 layout(set = 0, binding = 2) uniform samplerBuffer spacing_of_all;
-layout(set = 0, binding = 3) writeonly buffer Places { uvec4 places[]; };
+layout(set = 0, binding = 3) uniform usamplerBuffer faces;
+layout(set = 0, binding = 4) writeonly buffer Places { uvec4 places[]; };
 
 layout(push_constant, scalar) uniform Push { uint particle_count; } push;
 
 // Spacings: a point is one from its particle at most, and what stands between them has a particle this much farther.
 const float REACH_SPACINGS = 2.0;
+// Shares of the spacing: how far above the tangent plane others are, those that face another way too, whose underside this may be.
+const float ABOVE = 0.1;
+const float BARELY_ABOVE = 0.002;
+const float OTHER_WAY = 0.5;  // cosine
 
 void main() {
     uint particle = gl_GlobalInvocationID.x;
@@ -39,9 +48,21 @@ void main() {
         int bucket = int(bucket_of(cell, bucket_count));
         uint end = texelFetch(starts, bucket + 1).x;
         [[dont_unroll]] for (uint other = texelFetch(starts, bucket).x; other < end; ++other) {
-            vec3 way = uintBitsToFloat(texelFetch(sorted_places, int(other)).xyz) - position;
-            crowded = crowded || (dot(way, way) < reach * reach && dot(way, normal) > ABOVE * spacing);
+            uvec4 other_place = texelFetch(sorted_places, int(other));
+            vec3 way = uintBitsToFloat(other_place.xyz) - position;
+            float above = dot(way, normal);
+            bool stands = above > ABOVE * spacing
+                          || (above > BARELY_ABOVE * spacing && dot(unpack_direction(other_place.w), normal) < OTHER_WAY);
+            crowded = crowded || (stands && dot(way, way) < reach * reach);
         }
     }
-    places[particle] = uvec4(place.xyz, with_crowded(place.w, crowded));
+    vec3 face = unpack_direction(texelFetch(faces, int(particle)).x);
+    Hit above = closest_hit(offset_ray_origin(position, face), normal, 2.0 * LIFT * spacing);
+    float halvings = 0.0;
+    if (above.triangle != NO_TRIANGLE) {
+        crowded = true;
+        halvings = ceil(log2(max(2.0 * LIFT * spacing / max(above.distance, 1e-30), 1.0)));
+    }
+    uint level = crowded ? min(1u + uint(min(halvings, 100.0)), LEVELS) : 0u;
+    places[particle] = uvec4(place.xyz, with_headroom(place.w, level));
 }

@@ -116,7 +116,7 @@ void main() {
             return;
         }
         if (has_diffuse_lobe(next)) {
-            uint home = home_of(met, dot(face, direction) < 0.0 ? face : -face);
+            uint home = home_of_hit(met, dot(face, direction) < 0.0 ? face : -face, direction, hit.distance);
             uvec3 steps = uvec3(min(flux * push.steps_a_watt, vec3(1e8)) + 0.5);
             if (home != NO_PARTICLE && steps != uvec3(0u)) {
                 atomicAdd(glints[3u * home], steps.r);

@@ -1,23 +1,22 @@
 // Which particle stands for a point of a surface: the nearest one whose normal agrees, off the tangent plane counting more, to which a short segment
-// above the surface is free (one floor runs under many walls). The segment is tested only where something lies above the particle's tangent plane (crowd.comp).
+// above the surface is free (one floor runs under many walls). The segment is tested only where something stands near the particle (crowd.comp). It begins at a
+// place above the point that nothing separates from it, and ends within what is free above the particle, so that it passes no plate, however close that is.
 #ifndef PARTICLES_HOME
 #define PARTICLES_HOME
 
 #include "groups/particles.glsl"
 #include "lib/octahedral.glsl"
-#include "particles/crowded.glsl"
 #include "particles/grid.glsl"
+#include "particles/headroom.glsl"
 
 const uint NO_PARTICLE = 0xFFFFFFFFu;
 // Cosine between the normals of a point and its particle.
 const float SIMILAR = 0.7;
 const float SIMILAR_AT_LEAST = 0.1;
 const float NOT_OPPOSITE = -0.5;
-// Shares of the spacing.
-const float LIFT = 0.15;
 // What a distance across the tangent plane counts for, squared.
 const float ACROSS = 8.0;
-const int ATTEMPTS = 4;
+const int ATTEMPTS = 12;
 
 struct Neighbour {
     uint particle;
@@ -65,17 +64,25 @@ Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float afte
     return nearest;
 }
 
-// Whether nothing stands between a point and a particle, both lifted off their surfaces.
-bool sees_particle(vec3 position, vec3 normal, uint particle, float spacing) {
-    uvec4 place = texelFetch(particle_places, int(particle));
-    vec3 from = position + normal * (LIFT * spacing);
-    vec3 to = uintBitsToFloat(place.xyz) + unpack_direction(place.w) * (LIFT * spacing);
-    vec3 way = to - from;
+// Where segments to a particle end.
+vec3 above_particle(uvec4 place, float spacing) {
+    return uintBitsToFloat(place.xyz) + unpack_direction(place.w) * lift_of(place.w, spacing);
+}
+
+// Whether nothing stands between a place above a surface and a particle.
+bool sees_particle(vec3 from, uint particle, float spacing) {
+    vec3 way = above_particle(texelFetch(particle_places, int(particle)), spacing) - from;
     return dot(way, way) <= 1e-12 * spacing * spacing || !is_occluded(from, way, 1.0);
 }
 
+// A place above a point from which one sees it along `way` (unit, away from the surface) from `distance` on.
+vec3 lifted(vec3 position, vec3 normal, vec3 way, float distance, float spacing) {
+    float height = LIFT * spacing / clamp(dot(way, normal), 0.5, 1.0);
+    return position + way * min(height, 0.5 * distance);
+}
+
 // NO_PARTICLE where there is none within reach. Where no segment is free, the nearest in space takes it: no flux is dropped.
-uint home_among(vec3 position, vec3 normal, float least_similar, bool any) {
+uint home_among(vec3 position, vec3 normal, vec3 from, float least_similar, bool any) {
     float spacing = spacing_of_particles();
     float after = -1.0;
     bool wide = false;
@@ -83,7 +90,7 @@ uint home_among(vec3 position, vec3 normal, float least_similar, bool any) {
     [[dont_unroll]] for (int attempt = 0; attempt < 2 * ATTEMPTS; ++attempt) {
         Neighbour found = nearest_particle(position, normal, spacing, after, wide ? least_similar : SIMILAR, wide);
         bool none = found.particle == NO_PARTICLE;
-        if (!none && ((!wide && !found.crowded) || sees_particle(position, normal, found.particle, spacing))) {
+        if (!none && ((!wide && !found.crowded) || sees_particle(from, found.particle, spacing))) {
             return found.particle;
         }
         nearest = nearest == NO_PARTICLE && any ? found.particle : nearest;
@@ -98,8 +105,14 @@ uint home_among(vec3 position, vec3 normal, float least_similar, bool any) {
     return nearest;
 }
 
-uint home_of(vec3 position, vec3 normal) {
-    return home_among(position, normal, SIMILAR_AT_LEAST, true);
+// `from`: as lifted() gives it.
+uint home_of(vec3 position, vec3 normal, vec3 from) {
+    return home_among(position, normal, from, SIMILAR_AT_LEAST, true);
+}
+
+// For a point that a ray of `length` along `direction` met.
+uint home_of_hit(vec3 position, vec3 normal, vec3 direction, float length) {
+    return home_of(position, normal, lifted(position, normal, -direction, length, spacing_of_particles()));
 }
 
 #endif

@@ -35,14 +35,17 @@ void main() {
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         if (max3(indirect_diffuse_albedo(point)) > 0.0) {
             vec3 normal = point.geometric_normal;
-            home = home_of(position_rs + push.shift, normal);
+            vec3 position = position_rs + push.shift;
+            vec3 to_eye = direction_to_eye(camera, position_rs);
+            vec3 from = lifted(position, normal, to_eye, 3e38, spacing_of_particles());
+            home = home_of(position, normal, from);
             // Edge-on, rounding decides which side a pixel sees.
-            if (home == NO_PARTICLE && dot(direction_to_eye(camera, position_rs), normal) < EDGE_ON) {
-                home = home_of(position_rs + push.shift, -normal);
+            if (home == NO_PARTICLE && dot(to_eye, normal) < EDGE_ON) {
+                home = home_of(position, -normal, from);
             }
             // A thing smaller than the spacing, on which no particle came to lie, gets the light of what is around.
             if (home == NO_PARTICLE) {
-                home = home_among(position_rs + push.shift, normal, NOT_OPPOSITE, false);
+                home = home_among(position, normal, from, NOT_OPPOSITE, false);
             }
         }
     }

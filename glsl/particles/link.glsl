@@ -4,8 +4,7 @@
 
 #include "lib/vectors.glsl"
 
-const uint ESCAPED_LINK = 0xFFFFFFFFu;  // in the sky
-const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
+const uint DARK_LINK = 0xFFFFFFFFu;  // in the sky, or where nothing is scattered diffusely
 
 bool ends_on_particle(uint link) {
     return link < DARK_LINK;

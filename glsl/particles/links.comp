@@ -16,7 +16,8 @@
 
 // One link of one particle: the particle that stands for what a ray meets, sent in one of n×n strata of the hemisphere by the cosine. Of each square
 // of strata one link also serves for scattering: stratified as well, by fewer. Scattering follows mirrors and glass to the first diffuse surface (L D S D
-// belongs to the flux of particles); gathering does not: what it would find there is a caustic.
+// belongs to the flux of particles), and off a surface with both lobes it goes on as often as the specular one sends light on, with all of the flux: such a link
+// has two ends. Gathering ends where the ray does: what it would find behind is a caustic.
 //
 // Links that escape or end on an emitter also bring its light to the particle's flux (arrivals.glsl); that of emitters is weighted against the points that
 // emit.comp draws, by the balance heuristic (Veach & Guibas 1995): next to a lamp links find it, far from it points do.
@@ -25,7 +26,7 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) writeonly buffer Links { uint links[]; };
-layout(set = 0, binding = 2) buffer ScatterLinks { uint scatter_links[]; };
+layout(set = 0, binding = 2) buffer ScatterLinks { uint scatter_links[]; };  // first ends; where something is specular, all second ends behind
 layout(set = 0, binding = 3) buffer Arrivals { uint arrivals[]; };
 layout(set = 0, binding = 4) buffer Lost { uint lost[]; };
 
@@ -34,15 +35,18 @@ layout(push_constant, scalar) uniform Push {
     uint count;         // particles of the chunk
     uint gather_side;   // strata a side
     uint scatter_side;
+    uint second_ends;         // where they begin
+    uint sky_shines;
     float density_scale;      // from a point's density among all lights to that among emissive triangles
     float emitter_samples;    // points of emissive surfaces that emit.comp draws for each particle
     float greatest_radiance;  // of any emissive surface, W/(m²·sr)
 } push;
 
-// Where a link ends: what stands for the surface that its ray meets first, and for the first diffuse one behind mirrors and glass.
-struct End {
+// What stands for the surface that the ray meets first, for the first diffuse one on its way, and for one that its reflection off that one meets.
+struct Ends {
+    uint gathered;
     uint first;
-    uint beyond;
+    uint second;
 };
 
 void add_sky(uint particle, vec3 share) {
@@ -70,10 +74,15 @@ void add_emission(uint particle, Triangle triangle, Material material, Hit hit, 
     }
 }
 
-End trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direction, uint seed) {
-    End end = End(DARK_LINK, DARK_LINK);
+float uniform_of(uint seed) {
+    return float(seed >> 8) / 16777216.0;
+}
+
+// `follows`: beyond the first surface.
+Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direction, uint seed, bool follows) {
+    Ends ends = Ends(DARK_LINK, DARK_LINK, DARK_LINK);
     if (dot(direction, face) <= 0.0) {
-        return end;
+        return ends;
     }
     vec3 origin = offset_ray_origin(position, face);
     vec3 carried = vec3(1.0);
@@ -81,7 +90,7 @@ End trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direct
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
             add_sky(particle, carried);
-            return event == 0u ? End(ESCAPED_LINK, ESCAPED_LINK) : end;
+            return ends;
         }
         Triangle triangle = load_triangle(triangles, hit.triangle);
         Material material = load_material(materials, triangle.material);
@@ -93,30 +102,46 @@ End trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direct
         }
         if (has_diffuse_lobe(material)) {
             // Behind mirrors the link stands for what they let through, or for nothing.
-            bool arrives = event == 0u || float(seed_of(seed, 9u) >> 8) / 16777216.0 < dot(carried, vec3(1.0 / 3.0));
+            bool arrives = event == 0u || uniform_of(seed_of(seed, 9u)) < dot(carried, vec3(1.0 / 3.0));
             if (!arrives) {
-                return end;
+                return ends;
             }
-            uint home = home_of(met, dot(front, direction) < 0.0 ? front : -front);
+            uint home = home_of_hit(met, dot(front, direction) < 0.0 ? front : -front, direction, hit.distance);
             if (home == NO_PARTICLE) {
                 atomicAdd(lost[1], 1u);
-                return end;
+                return ends;
             }
-            return End(event == 0u ? home : DARK_LINK, home);
+            if (ends.first == DARK_LINK) {
+                ends.first = home;
+            } else {
+                ends.second = home;
+            }
+            ends.gathered = event == 0u ? home : ends.gathered;
+            if (event > 0u) {
+                return ends;
+            }
         }
-        if (SPECULAR_LOBES == 0u || (material.flags & MATERIAL_UNLIT) != 0u) {
-            return end;
+        if (SPECULAR_LOBES == 0u || !follows || (material.flags & MATERIAL_UNLIT) != 0u) {
+            return ends;
         }
         vec4 random = sobol_sample(sobol, event, seed);
         Passage passage = pass_on(triangle, material, hit.barycentric, met, direction, hit.distance, random.xyz);
         carried *= passage.weight;
+        // Off a surface with both lobes few go on, which then carry as much as the others.
+        if (ends.first != DARK_LINK) {
+            float chance = min(dot(carried, vec3(1.0 / 3.0)), 1.0);
+            if (uniform_of(seed_of(seed, 11u)) >= chance) {
+                return ends;
+            }
+            carried /= chance;
+        }
         if (!passage.goes_on || max3(carried) < 1e-3) {
-            return end;
+            return ends;
         }
         origin = passage.origin;
         direction = passage.direction;
     }
-    return end;
+    return ends;
 }
 
 void main() {
@@ -135,13 +160,19 @@ void main() {
     vec2 square = (vec2(stratum) + jitter) / float(push.gather_side);
     vec3 normal = unpack_direction(place.w);
     vec3 direction = to_world(frame_around(normal), cosine_direction(square));
-    End end = trace_link(particle, uintBitsToFloat(place.xyz), normal, face, direction, random);
-    links[own * link_count + link] = end.first;
     uint block = push.gather_side / push.scatter_side;
     uvec2 scatter = stratum / block;
     uint chosen = seed_of(seed_of(particle, 0x5CA77E12u), scatter.y * push.scatter_side + scatter.x) % (block * block);
     uvec2 within = stratum - scatter * block;
-    if (max(scatter.x, scatter.y) < push.scatter_side && within.y * block + within.x == chosen) {
-        scatter_links[(particle * push.scatter_side + scatter.y) * push.scatter_side + scatter.x] = end.beyond;
+    bool scatters = max(scatter.x, scatter.y) < push.scatter_side && within.y * block + within.x == chosen;
+    bool follows = scatters || push.sky_shines != 0u;
+    Ends ends = trace_link(particle, uintBitsToFloat(place.xyz), normal, face, direction, random, follows);
+    links[own * link_count + link] = ends.gathered;
+    if (scatters) {
+        uint scatter_link = (particle * push.scatter_side + scatter.y) * push.scatter_side + scatter.x;
+        scatter_links[scatter_link] = ends.first;
+        if (SPECULAR_LOBES != 0u) {
+            scatter_links[push.second_ends + scatter_link] = ends.second;
+        }
     }
 }

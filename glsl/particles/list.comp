@@ -23,6 +23,8 @@ const float LIST_SPACINGS = KERNEL_SPACINGS + 1.0;
 // Cosine between normals; share of the spacing off the tangent plane.
 const float LIST_SIMILAR = 0.8;
 const float LIST_ACROSS = 0.5;
+// Slope from which entries are tested where nothing stands near.
+const float OFF_PLANE = 0.05;
 
 void main() {
     uint particle = gl_GlobalInvocationID.x;
@@ -39,7 +41,6 @@ void main() {
     ivec3 size = cell_of(position + reach, spacing) - low + 1;
     uint first = particle * LIST_CAPACITY;
     uint found = 0u;
-    bool crowded = false;
     [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {
         ivec3 cell = low + ivec3(number % size.x, number / size.x % size.y, number / (size.x * size.y));
         int bucket = int(bucket_of(cell, bucket_count));
@@ -53,7 +54,6 @@ void main() {
             if (dot(way, way) > reach * reach || cell_of(other_position, spacing) != cell) {
                 continue;
             }
-            crowded = crowded || above > ABOVE * spacing;
             if (abs(above) <= LIST_ACROSS * spacing && dot(unpack_direction(other_place.w), normal) > LIST_SIMILAR) {
                 if (found < LIST_CAPACITY) {
                     lists[first + found] = other;
@@ -64,14 +64,16 @@ void main() {
     }
     uint listed = min(found, LIST_CAPACITY);
     uint kept = listed;
-    if (crowded) {
-        kept = 0u;
-        [[dont_unroll]] for (uint entry = 0u; entry < listed; ++entry) {
-            uint other = lists[first + entry];
-            if (other == particle || sees_particle(position, normal, other, spacing)) {
-                lists[first + kept] = other;
-                ++kept;
-            }
+    vec3 from = above_particle(place, spacing);
+    kept = 0u;
+    [[dont_unroll]] for (uint entry = 0u; entry < listed; ++entry) {
+        uint other = lists[first + entry];
+        vec3 way = position_of_particle(other) - position;
+        // Off the tangent plane may be another layer of thin things.
+        bool tested = is_crowded(place.w) || abs(dot(way, normal)) > OFF_PLANE * length(way);
+        if (!tested || other == particle || sees_particle(from, other, spacing)) {
+            lists[first + kept] = other;
+            ++kept;
         }
     }
     lengths[particle] = kept;

@@ -14,6 +14,9 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint FIRST = 1u;
 
+// 1: links have second ends, off surfaces that reflect specularly too.
+layout(constant_id = 2) const uint SECOND_ENDS = 0u;
+
 layout(set = 0, binding = 0) uniform samplerBuffer matter;
 layout(set = 0, binding = 1) uniform samplerBuffer emitted;            // W: what the first step passes on
 layout(set = 0, binding = 2) uniform usamplerBuffer scatter_links;
@@ -27,6 +30,14 @@ layout(push_constant, scalar) uniform Push {
     uint link_count;
     uint number;  // of the step, from 0
 } push;
+
+void add_to(uint end, uvec3 share) {
+    if (ends_on_particle(end)) {
+        atomicAdd(next[3u * end], share.r);
+        atomicAdd(next[3u * end + 1u], share.g);
+        atomicAdd(next[3u * end + 2u], share.b);
+    }
+}
 
 void main() {
     uint particle = gl_GlobalInvocationID.x;
@@ -51,11 +62,10 @@ void main() {
     }
     uint drawn = FIRST != 0u ? 0u : seed_of(seed_of(particle, 0xB0u), push.number) % push.link_count;
     [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
-        uint end = texelFetch(scatter_links, int(particle * push.link_count + drawn + i)).x;
-        if (ends_on_particle(end)) {
-            atomicAdd(next[3u * end], share.r);
-            atomicAdd(next[3u * end + 1u], share.g);
-            atomicAdd(next[3u * end + 2u], share.b);
+        uint link = particle * push.link_count + drawn + i;
+        add_to(texelFetch(scatter_links, int(link)).x, share);
+        if (SECOND_ENDS != 0u) {
+            add_to(texelFetch(scatter_links, int(push.particle_count * push.link_count + link)).x, share);
         }
     }
 }

@@ -136,6 +136,8 @@ impl ParticleSpace {
         graph.pass("diffuse/particles/place/sort", pass).threads(threads);
         let places = graph.buffer::<[u32; 4]>("particles.places", particle_count as usize);
         let pass = Crowd {
+            scene_rays: rays.clone(),
+            faces: faces.texels(WORD),
             sorted_places: sorted.texels(WORDS4),
             starts: starts.texels(WORD),
             spacing_of_all: spacing.texels(FLOAT),
@@ -214,8 +216,9 @@ impl Unlinked {
         let (gather_side, scatter_side) = (options.gather, options.scatter);
         let link_count = gather_side * gather_side;
         let particle_count = self.particle_count;
-        let scatter_links = (particle_count * scatter_side * scatter_side) as usize;
-        let scatter_links = graph.buffer::<u32>("particles.scatter_links", scatter_links);
+        let second_ends = particle_count * scatter_side * scatter_side;
+        let ends = if scene.facts.specular { 2 } else { 1 };
+        let scatter_links = graph.buffer::<u32>("particles.scatter_links", (ends * second_ends) as usize);
         let emits = scene.emissive_count > 0;
         let arrival_words = if emits { 9 } else { 3 };
         let arrivals = graph.buffer::<u32>("particles.arrivals", arrival_words * particle_count as usize);
@@ -246,6 +249,8 @@ impl Unlinked {
                         count,
                         gather_side,
                         scatter_side,
+                        second_ends,
+                        sky_shines: u32::from(scene.sky != [0.0; 3]),
                         density_scale: scene.emissive_density_scale,
                         emitter_samples: options.emitter_samples as f32,
                         greatest_radiance: scene.greatest_radiance,

@@ -78,6 +78,7 @@ pub(super) fn light(
         }
         let pass = Scatter {
             first: u32::from(number == 0),
+            second_ends: u32::from(scene.facts.specular),
             matter: space.matter.texels(FLOATS4),
             emitted: emitted.texels(FLOATS4),
             scatter_links: space.scatter_links.texels(WORD),

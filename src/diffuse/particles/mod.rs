@@ -25,7 +25,7 @@ pub(crate) struct Particles;
 
 /// Scattering steps after which less than a hundredth of the flux is left, if surfaces reflect `albedo` of it.
 fn steps_for(albedo: f64) -> u32 {
-    ((0.01_f64.ln() / albedo.clamp(1e-3, 0.95).ln()).ceil() as u32).clamp(1, MOST_BOUNCES)
+    ((0.01_f64.ln() / albedo.clamp(1e-3, 0.99).ln()).ceil() as u32).clamp(1, MOST_BOUNCES)
 }
 
 impl Method for Particles {

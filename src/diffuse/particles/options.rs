@@ -3,7 +3,7 @@
 use crate::method::{OptionKind, options};
 
 /// Scattering steps at most.
-pub(crate) const MOST_BOUNCES: u32 = 32;
+pub(crate) const MOST_BOUNCES: u32 = 64;
 
 options! {
     /// Options of the `particles` diffuse method (Chang, Park & Ihm).

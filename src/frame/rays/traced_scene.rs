@@ -17,7 +17,7 @@ use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Alpha, Bounds, Cutout, Extent, Facts, Material, Scene, cutout};
+use crate::scene::{Alpha, Bounds, Cutout, Extent, Facts, Material, Scene, cutout, has_specular_lobe};
 use crate::shaders::groups::{LightTargets, SceneLights, SceneRays};
 use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
@@ -56,7 +56,7 @@ pub(crate) struct TracedScene {
     pub(crate) triangle_count: u32,
     /// The size that all but a sixteenth of the triangles have, metres.
     pub(crate) fine_size: f64,
-    /// The largest share of light that some material's diffuse lobe reflects, textures aside.
+    /// The largest share of light that some material with a diffuse lobe reflects, textures aside.
     pub(crate) greatest_albedo: f64,
     /// Of the triangles that matter, m².
     pub(crate) area: f64,
@@ -78,6 +78,8 @@ pub(crate) struct TracedScene {
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
+/// What a dielectric with the usual index reflects of light from all around: 0.04 + 0.96/21.
+const MEAN_FRESNEL: f64 = 0.0857;
 const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
 const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
@@ -179,7 +181,7 @@ impl TracedScene {
                 .sum(),
             triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
             fine_size: fine,
-            greatest_albedo: scene.materials().iter().map(diffuse_albedo).fold(0.0, f64::max),
+            greatest_albedo: scene.materials().iter().map(reflected).fold(0.0, f64::max),
             punctual_count: u32::try_from(lights.len()).unwrap_or(0),
             emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
             emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
@@ -257,11 +259,13 @@ impl TracedScene {
     }
 }
 
-/// What a material's diffuse lobe reflects of light, in the brightest channel, without its textures.
-fn diffuse_albedo(material: &Material) -> f64 {
+/// What a material with a diffuse lobe reflects of light, in the brightest channel, without its textures; its specular layer reflects what it keeps from that lobe.
+fn reflected(material: &Material) -> f64 {
     let [red, green, blue, _] = material.base_color;
     let lobe = (1.0 - material.metallic) * (1.0 - material.transmission) * if material.unlit { 0.0 } else { 1.0 };
-    f64::from(red.max(green).max(blue) * lobe).clamp(0.0, 1.0)
+    let diffuse = f64::from(red.max(green).max(blue) * lobe).clamp(0.0, 1.0);
+    let layer = if has_specular_lobe(material) { MEAN_FRESNEL } else { 0.0 };
+    if diffuse > 0.0 { diffuse + layer * (1.0 - diffuse) } else { 0.0 }
 }
 
 /// The size that all but a sixteenth of the triangles have, metres.

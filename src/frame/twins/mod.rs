@@ -198,10 +198,13 @@ pub(crate) fn surface_brdf(surface: &Scatterer, to_light: Vec3, to_eye: Vec3) ->
     diffuse_brdf(surface, to_eye.dot(middle)) + specular_brdf(surface, to_light, to_eye)
 }
 
+/// The mean of (1 − v·h)⁵ over both directions, cosine-weighted (`lib/brdf.glsl`).
+const MEAN_HALF_FRESNEL: f32 = 0.003_685;
+
 /// What a virtual point light reflects and a receiver of indirect light answers with (`lib/brdf.glsl`).
 #[must_use]
 pub(crate) fn indirect_diffuse_albedo(diffuse_albedo: Vec3, f0: Vec3, f90: f32) -> Vec3 {
-    diffuse_albedo * (1.0 - (f0 + (Vec3::splat(f90) - f0) / 21.0).max_element())
+    diffuse_albedo * (1.0 - f0.lerp(Vec3::splat(f90), MEAN_HALF_FRESNEL).max_element())
 }
 
 /// The two texels of a virtual point light: reflected flux in W, the area in m² that it stands for (`lib/vpl.glsl`).
