@@ -7,6 +7,8 @@
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
 
 mod geometry;
+#[cfg(test)]
+mod lamp_tests;
 mod lighting;
 pub(crate) mod options;
 mod shading;

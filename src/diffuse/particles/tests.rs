@@ -13,26 +13,26 @@ use crate::method::{Options, Preset};
 use crate::renderer::{Frame, FrameRequest, PassTiming, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, LightKind, Material, Scene};
 
-fn options(count: u32, bounces: u32) -> ParticlesOptions {
+pub(super) fn options(count: u32, bounces: u32) -> ParticlesOptions {
     ParticlesOptions { count, bounces: Some(bounces), gather: 8, ..ParticlesOptions::preset(Preset::Default) }
 }
 
-fn settings(options: ParticlesOptions) -> Settings {
+pub(super) fn settings(options: ParticlesOptions) -> Settings {
     Settings { particles: options, ..Settings::new(Technique::Particles, Preset::Default) }
 }
 
 /// What the stages leave, read back.
-struct Stages {
+pub(super) struct Stages {
     /// Albedo and area of each particle.
     matter: Vec<[f32; 4]>,
     /// Flux that lights gave, W.
-    emitted: Vec<[f32; 4]>,
+    pub(super) emitted: Vec<[f32; 4]>,
     /// Received in each step, W.
     received: Vec<[f64; 3]>,
     passes: Vec<PassTiming>,
 }
 
-fn stages(session: &Session, scene: &Scene, options: &ParticlesOptions) -> Stages {
+pub(super) fn stages(session: &Session, scene: &Scene, options: &ParticlesOptions) -> Stages {
     let mut store = session.store();
     let traced = TracedScene::new(session.context.shared_device(), scene).expect("the scene fits the device");
     let mut graph = Graph::new(&mut store);
@@ -116,7 +116,12 @@ fn the_walls_get_what_a_light_sends_out_and_pass_on_their_albedo_of_it() {
 }
 
 /// A small picture's slot `diffuse`: the mean, and the relative error of blocks of 8×8 pixels.
-fn against_paths(session: &Session, scene: &Scene, camera: CameraView, options: ParticlesOptions) -> (f64, f64) {
+pub(super) fn against_paths(
+    session: &Session,
+    scene: &Scene,
+    camera: CameraView,
+    options: ParticlesOptions,
+) -> (f64, f64) {
     let asked = request([64, 48], camera, &[Slot::Diffuse]);
     let mut path = Settings::new(Technique::Path, Preset::Default);
     (path.path.spp, path.path.bounces) = (96, options.bounces.map(|bounces| bounces + 1));
