@@ -1,8 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "groups/scene_lights.glsl"
-#include "lib/lights.glsl"
 #include "direct/receiver.glsl"
+#include "lib/punctual_light.glsl"
 
 // What punctual lights add to the slot `direct` of one pixel, one ray a light:
 //
@@ -17,23 +17,6 @@ layout(push_constant, scalar) uniform Push {
     vec3 shift;
     uint light_count;
 } push;
-
-vec3 reflected_radiance(Receiver receiver, Light light) {
-    Surface point = receiver.surface;
-    Illumination illumination = illuminate(light, point.position_rs);
-    float cosine = dot(point.normal, illumination.to_light);
-    if (min(cosine, dot(point.geometric_normal, illumination.to_light)) <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 brdf = SPECULAR_LOBES != 0u ? surface_brdf(point, illumination.to_light, receiver.to_eye) : point.diffuse_albedo * INVERSE_PI;
-    vec3 radiance = brdf * illumination.irradiance * cosine;
-    if (max3(radiance) <= 0.0) {
-        return vec3(0.0);
-    }
-    bool directional = light.kind == LIGHT_DIRECTIONAL;
-    vec3 way = directional ? illumination.to_light : light.position_rs - receiver.ray_origin;
-    return is_occluded(receiver.ray_origin, way, directional ? 3e38 : 1.0) ? vec3(0.0) : radiance;
-}
 
 void main() {
     ivec2 pixel = pixel_of_invocation();

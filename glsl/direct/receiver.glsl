@@ -8,17 +8,11 @@
 #include "lib/pixels.glsl"
 #include "lib/sobol.glsl"
 #include "lib/surface_packing.glsl"
-#include "lib/lobes.glsl"
+#include "lib/receiver.glsl"
 
 #include "lib/pixel_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
-
-struct Receiver {
-    Surface surface;  // position in the rays' space
-    vec3 to_eye;
-    vec3 ray_origin;
-};
 
 Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
     vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), pixel_depth);
@@ -34,27 +28,6 @@ Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
 float power_heuristic(float density, float other) {
     float ratio = other / density;
     return 1.0 / (1.0 + ratio * ratio);
-}
-
-// How the receiver scatters, in the frame of its shading normal.
-struct Scattering {
-    Matter matter;
-    Frame frame;
-    vec3 viewer;
-    vec3 shares;
-};
-
-// The G-buffer knows no transmission.
-Scattering scattering_of(Receiver receiver) {
-    Surface point = receiver.surface;
-    Scattering scattering;
-    scattering.matter = Matter(
-        point.diffuse_albedo, point.f0, point.f90, max(point.roughness * point.roughness, MINIMUM_ALPHA), vec3(0.0), 1.0);
-    scattering.frame = frame_around(point.normal);
-    vec3 viewer = to_local(scattering.frame, receiver.to_eye);
-    scattering.viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
-    scattering.shares = lobe_shares(scattering.matter, scattering.viewer.z);
-    return scattering;
 }
 
 void store_direct(ivec2 pixel, vec3 radiance) {

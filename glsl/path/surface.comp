@@ -4,7 +4,7 @@
 #include "groups/paths.glsl"
 #include "groups/scene_rays.glsl"
 #include "lib/emissive_cells.glsl"
-#include "lib/texels.glsl"
+#include "lib/hit_material.glsl"
 #include "lib/traced_scene.glsl"
 #include "path/mis.glsl"
 #include "path/queue.glsl"
@@ -35,11 +35,6 @@ layout(push_constant, scalar) uniform Push {
     uint ends;             // 1: nothing scatters here, the path only looks for light
 } push;
 
-struct Footprint {
-    vec4 dx;
-    vec4 dy;
-};
-
 // The change of the texture coordinates from this pixel to the next one, where the neighbour's ray meets the plane of the triangle.
 vec4 texcoord_step(Triangle triangle, vec3 position, vec3 ray_step) {
     vec3 normal = cross(triangle.edge1, triangle.edge2);
@@ -54,50 +49,6 @@ vec4 texcoord_step(Triangle triangle, vec3 position, vec3 ray_step) {
     float u = dot(cross(moved, triangle.edge2), normal) * inverse;
     float v = dot(cross(triangle.edge1, moved), normal) * inverse;
     return interpolated(corner_texcoords, triangle, vec3(-u - v, u, v));
-}
-
-vec2 set_of(uint texcoord, vec4 sets) {
-    return texcoord == 0u ? sets.xy : sets.zw;
-}
-
-// Texture use.layer of the material at texture coordinates `sets`.
-vec4 sample_use(uint material, uint use_number, vec4 sets, Footprint footprint) {
-    TextureUse use = load_texture_use(material_textures, material, use_number);
-    vec3 uv = vec3(set_of(use.texcoord, sets), 1.0);
-    mat2 linear = transpose(mat2(use.u_row.xy, use.v_row.xy));
-    vec2 dx = linear * set_of(use.texcoord, footprint.dx);
-    vec2 dy = linear * set_of(use.texcoord, footprint.dy);
-    return sample_texels(texels, texture_table, use.layer, vec2(dot(use.u_row, uv), dot(use.v_row, uv)), dx, dy);
-}
-
-bool has_texture(Material material, uint kind) {
-    return (material.flags & TEXTURES & kind) != 0u;
-}
-
-// The textures of a material at a point, one after the other through one piece of code: kernels stay small.
-void apply_textures(inout MaterialPoint point, inout vec3 normal_texel, Material material, uint index, vec4 sets, Footprint footprint) {
-    [[dont_unroll]] for (uint use = 0u; use < 7u; ++use) {
-        if (!has_texture(material, MATERIAL_BASE_COLOR_TEXTURE << use)) {
-            continue;
-        }
-        vec4 texel = sample_use(index, use, sets, footprint);
-        if (use == USE_BASE_COLOR) {
-            point.base_color *= texel;
-        } else if (use == USE_METALLIC_ROUGHNESS) {
-            point.roughness *= texel.g;
-            point.metallic *= texel.b;
-        } else if (use == USE_NORMAL) {
-            normal_texel = texel.xyz * 2.0 - 1.0;
-        } else if (use == USE_EMISSIVE) {
-            point.emissive *= texel.rgb;
-        } else if (use == USE_SPECULAR) {
-            point.specular *= texel.a;
-        } else if (use == USE_SPECULAR_COLOR) {
-            point.specular_color *= texel.rgb;
-        } else {
-            point.transmission *= texel.r;
-        }
-    }
 }
 
 void add_radiance(uint path, uint slot, vec3 radiance) {
@@ -199,21 +150,7 @@ bool meet_surface(uint path) {
     }
 
     // ---- the vertex
-    vec3 normal = geometric_normal;
-    if (!triangle.flat_normals) {
-        vec3 vertex_normal = normalize_or(
-            weights.x * unpack_direction(triangle.normals.x) + weights.y * unpack_direction(triangle.normals.y)
-                + weights.z * unpack_direction(triangle.normals.z), face);
-        vec3 mapped = vertex_normal;
-        if (NORMAL_MAPS != 0u && has_texture(material, MATERIAL_NORMAL_TEXTURE)) {
-            vec4 tangent = interpolated(corner_tangents, triangle, weights);
-            vec3 unit_tangent = normalize_or(tangent.xyz, vec3(0.0));
-            vec3 bitangent = cross(vertex_normal, unit_tangent) * tangent.w;
-            vec2 slope = normal_texel.xy * material.normal_scale;
-            mapped = normalize_or(slope.x * unit_tangent + slope.y * bitangent + normal_texel.z * vertex_normal, vertex_normal);
-        }
-        normal = dot(vertex_normal, geometric_normal) < 0.0 ? -mapped : mapped;
-    }
+    vec3 normal = mapped_normal(triangle, material, weights, face, geometric_normal, normal_texel);
     uint first = uint(VERTEX_TEXELS) * path;
     vertices[first] = uvec4(floatBitsToUint(position), pack_direction(geometric_normal));
     vertices[first + 1u] = uvec4(floatBitsToUint(clamp(lobes.diffuse_albedo, 0.0, 1.0)), pack_direction(normal));

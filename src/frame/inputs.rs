@@ -4,6 +4,7 @@ use super::gbuffer::GBuffer;
 use super::geometry::Geometry;
 use super::light_set::LightSet;
 use super::light_views::LightViews;
+use super::offers::Offers;
 use super::rays::TracedScene;
 use super::scene_data::SceneData;
 use crate::scene::Facts;
@@ -33,4 +34,8 @@ pub(crate) struct FrameInputs<'f> {
     /// Present where some method takes them and something shines.
     pub(crate) lights: Option<LightViews>,
     pub(crate) traced: Option<&'f TracedScene>,
+    /// What methods that declared earlier offer to later ones.
+    pub(crate) offers: Offers,
+    /// Whether mirrors show lamps and the sky in the slot `direct`; else whoever follows reflections has to show them.
+    pub(crate) mirrored_lamps: bool,
 }

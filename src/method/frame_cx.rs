@@ -13,6 +13,8 @@ pub(crate) struct Inputs {
     /// What their texels reflect.
     pub(crate) light_flux: bool,
     pub(crate) rays: Rays,
+    /// The diffuse light at what mirrors show, if the method of the slot `diffuse` offers it.
+    pub(crate) mirrored_light: bool,
 }
 
 impl Inputs {
@@ -22,6 +24,7 @@ impl Inputs {
             light_depth: self.light_depth || other.light_depth,
             light_flux: self.light_flux || other.light_flux,
             rays: self.rays.max(other.rays),
+            mirrored_light: self.mirrored_light || other.mirrored_light,
         }
     }
 

@@ -18,7 +18,9 @@ macro_rules! for_all_methods {
             caustics {
                 photons => Photons(PhotonOptions),
             }
-            specular {}
+            specular {
+                trace => Trace(TraceOptions),
+            }
             estimator {
                 path => Path(PathOptions),
                 sppm => Sppm(SppmOptions),

@@ -27,6 +27,10 @@ pub(crate) trait Method {
     const NAME: &'static str;
     const SLOT: Slot;
     type Options: Options;
+    /// Of the slot `diffuse`: it says what diffuse light comes to points that mirrors show (`frame/mirrored.rs`).
+    const LIGHTS_MIRRORED: bool = false;
+    /// Of the slot `direct`: mirrors show lamps and the sky.
+    const SHOWS_LAMPS: bool = false;
 
     /// Which light it can find: what it is compared with.
     fn light_paths(options: &Self::Options) -> LightPaths;
@@ -50,6 +54,9 @@ pub(crate) trait Method {
     fn lead_in(_: &Self::Options) -> u32 {
         0
     }
+
+    /// Declares what other methods have to know of before they declare their passes.
+    fn prepare(_: &mut FrameCx<'_, '_>, _: &Self::Options) {}
 
     /// Declares its passes in the order in which they run. Returns the slot's radiance in W/(m² sr), one texel a pixel; none where it is black.
     ///

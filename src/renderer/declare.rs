@@ -11,6 +11,7 @@ use crate::frame::geometry::Geometry;
 use crate::frame::inputs::{FrameInputs, FrameTime};
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::light_views;
+use crate::frame::offers::Offers;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::frame::tonemap::tonemap;
@@ -59,6 +60,8 @@ pub(crate) struct Wanted {
     pub(crate) method: &'static MethodEntry,
     pub(crate) inputs: Inputs,
     pub(crate) skipped: Option<&'static str>,
+    /// Whether its slot is asked for, not only what it offers to other methods.
+    pub(crate) shown: bool,
 }
 
 /// The methods of the slots that a request wants.
@@ -73,9 +76,12 @@ pub(crate) fn wanted_methods(
         let inputs = (method.inputs)(settings);
         let unlit = inputs.light_views() && set.lights.is_empty();
         let skipped = unlit.then_some("no light").or_else(|| (method.skip)(settings, facts));
-        Some(Wanted { method, inputs, skipped })
+        Some(Wanted { method, inputs, skipped, shown: wants(slot) })
     };
-    Slot::ALL.into_iter().filter(|slot| wants(*slot)).filter_map(method).collect()
+    let all: Vec<Wanted> = Slot::ALL.into_iter().filter_map(method).collect();
+    let mirrored = all.iter().any(|method| method.shown && method.skipped.is_none() && method.inputs.mirrored_light);
+    let offers = |wanted: &Wanted| mirrored && wanted.method.lights_mirrored && wanted.skipped.is_none();
+    all.into_iter().filter(|wanted| wanted.shown || offers(wanted)).collect()
 }
 
 /// What the methods that run take together.
@@ -119,6 +125,7 @@ impl Shared {
         set: &'a LightSet,
         traced: Option<&'a TracedScene>,
         inputs: Inputs,
+        mirrored_lamps: bool,
     ) -> FrameInputs<'a> {
         let lights = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, inputs.light_flux));
         FrameInputs {
@@ -132,6 +139,8 @@ impl Shared {
             set,
             lights,
             traced,
+            offers: Offers::default(),
+            mirrored_lamps,
         }
     }
 }
@@ -152,17 +161,24 @@ pub(crate) fn declare(
     if lights.lights.is_empty() && methods.iter().any(|wanted| wanted.inputs.light_views()) {
         graph.skip("light-views", "no light");
     }
-    let frame = shared.inputs(graph, data, lights, traced, inputs_of(&methods));
+    let mirrored_lamps = settings.methods.filler(Slot::Direct).is_some_and(|filler| match filler {
+        Filler::Method(method) => method.shows_lamps,
+        Filler::Estimator(_) => true,
+    });
+    let frame = shared.inputs(graph, data, lights, traced, inputs_of(&methods), mirrored_lamps);
     let mut slots: Vec<(Slot, ImageRef)> = Vec::new();
     if let (Some(emission), true) = (shared.surface.emission, settings.methods.filler(Slot::Emission).is_none()) {
         slots.push((Slot::Emission, emission));
     }
-    for Wanted { method, inputs, skipped } in methods {
+    for Wanted { method, inputs, .. } in methods.iter().filter(|wanted| wanted.skipped.is_none()) {
+        (method.prepare)(&mut FrameCx::new(graph, &frame, *inputs), settings);
+    }
+    for Wanted { method, inputs, skipped, shown } in methods {
         match skipped {
             Some(reason) => graph.skip(&format!("{}/{}", method.slot, method.name), reason),
             None => {
                 let image = (method.declare)(&mut FrameCx::new(graph, &frame, inputs), settings)?;
-                slots.extend(image.map(|image| (method.slot, image)));
+                slots.extend(image.filter(|_| shown).map(|image| (method.slot, image)));
             }
         }
     }

@@ -27,6 +27,9 @@ pub(crate) struct MethodEntry {
     pub(crate) reduced: fn(&Settings) -> Option<String>,
     pub(crate) lead_in: fn(&Settings) -> u32,
     pub(crate) shaders: fn(&Settings, bool) -> Vec<&'static str>,
+    pub(crate) lights_mirrored: bool,
+    pub(crate) shows_lamps: bool,
+    pub(crate) prepare: fn(&mut FrameCx<'_, '_>, &Settings),
     pub(crate) declare: Declare,
 }
 
@@ -60,6 +63,9 @@ macro_rules! entries {
             reduced: |settings| <crate::$slot::$module::$method as Method>::reduced(&settings.$module),
             lead_in: |settings| <crate::$slot::$module::$method as Method>::lead_in(&settings.$module),
             shaders: |settings, software| <crate::$slot::$module::$method as Method>::shaders(&settings.$module, software),
+            lights_mirrored: <crate::$slot::$module::$method as Method>::LIGHTS_MIRRORED,
+            shows_lamps: <crate::$slot::$module::$method as Method>::SHOWS_LAMPS,
+            prepare: |cx, settings| <crate::$slot::$module::$method as Method>::prepare(cx, &settings.$module),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
         }),*]
     };
@@ -136,7 +142,24 @@ impl Settings {
             Some(Filler::Method(method)) => (method.reduced)(self),
             _ => None,
         });
-        methods.collect()
+        methods.chain(self.mirrors_without_diffuse()).collect()
+    }
+
+    /// That what mirrors show lacks diffuse light, if it does.
+    fn mirrors_without_diffuse(&self) -> Option<String> {
+        let Some(Filler::Method(specular)) = self.methods.filler(Slot::Specular) else { return None };
+        let offered =
+            matches!(self.methods.filler(Slot::Diffuse), Some(Filler::Method(diffuse)) if diffuse.lights_mirrored);
+        let offering: Vec<&str> =
+            DIFFUSE.iter().filter(|entry| entry.lights_mirrored).map(|entry| entry.name).collect();
+        ((specular.inputs)(self).mirrored_light && !offered).then(|| {
+            format!(
+                "{} shows what mirrors show by direct light alone: --diffuse {} offers no other, {} do",
+                specular.name,
+                self.methods.name_of(Slot::Diffuse),
+                offering.join(" and ")
+            )
+        })
     }
 
     /// Frames that come before the first one that is worth a look, for methods that keep something over frames: zero if none does.

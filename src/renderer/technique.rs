@@ -61,7 +61,7 @@ techniques! {
     }
     /// Light between area particles along links that were traced once (Chang, Park & Ihm), direct light by rays: geometry takes seconds, lights and
     /// camera move freely.
-    Particles, "particles" { direct: DirectMethod::Traced, diffuse: DiffuseMethod::Particles }
+    Particles, "particles" { direct: DirectMethod::Traced, diffuse: DiffuseMethod::Particles, specular: SpecularMethod::Trace }
     /// Path tracing and light tracing: the reference, at as many samples as time allows.
     Path, "path" {
         direct: DirectMethod::Traced, diffuse: DiffuseMethod::Path, caustics: CausticsMethod::Path, specular: SpecularMethod::Path

@@ -1,4 +1,4 @@
-//! Methods of the `specular` slot: none so far but estimators.
+//! Methods of the `specular` slot.
 
 use crate::method::{for_all_methods, modules};
 

@@ -62,7 +62,7 @@ impl Method for Photons {
 
     fn inputs(options: &PhotonOptions) -> Inputs {
         let rays = if options.trace == PhotonTracing::Bvh { Rays::ToSurfaces } else { Rays::None };
-        Inputs { light_depth: true, light_flux: false, rays }
+        Inputs { light_depth: true, rays, ..Inputs::default() }
     }
 
     fn shaders(options: &PhotonOptions, _: bool) -> Vec<&'static str> {

@@ -10,6 +10,7 @@ mod geometry;
 #[cfg(test)]
 mod lamp_tests;
 mod lighting;
+mod mirrored;
 pub(crate) mod options;
 mod shading;
 #[cfg(test)]
@@ -34,6 +35,7 @@ impl Method for Particles {
     const NAME: &'static str = "particles";
     const SLOT: Slot = Slot::Diffuse;
     type Options = ParticlesOptions;
+    const LIGHTS_MIRRORED: bool = true;
 
     fn light_paths(options: &ParticlesOptions) -> LightPaths {
         LightPaths::up_to(options.bounces.map(|bounces| bounces + 1))

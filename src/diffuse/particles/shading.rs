@@ -3,6 +3,8 @@
 use ash::vk;
 
 use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use super::mirrored;
+use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::FrameCx;
 use crate::shaders::particles::{Gather, GatherPush, Homes, HomesPush, Shade, ShadePush, Used, UsedPush};
@@ -16,6 +18,7 @@ pub(super) fn shade(
     radiance: BufferRef<[f32; 4]>,
 ) -> ImageRef {
     let surface = cx.frame.surface;
+    let (offers, points) = (&cx.frame.offers, cx.frame.offers.get::<MirroredPoints>());
     let graph = &mut *cx.graph;
     let particle_count = space.count;
     let homes = graph.image("particles.homes", vk::Format::R32_UINT, surface.size);
@@ -30,6 +33,7 @@ pub(super) fn shade(
         push: HomesPush { shift },
     };
     graph.pass("diffuse/particles/find/homes", pass).pixels(surface.size);
+    let mirrored_homes = points.as_ref().map(|points| mirrored::mark(graph, space, points, marks));
     let used = graph.buffer::<u32>("particles.used", particle_count as usize);
     let counts = graph.buffer::<u32>("particles.used_counts", 2);
     graph.fill_buffer("diffuse/particles/find/clear-used", used, 0);
@@ -56,6 +60,9 @@ pub(super) fn shade(
             push: GatherPush { first: chunk.first, count: chunk.count, link_count },
         };
         graph.pass(&format!("diffuse/particles/gather.{number}"), pass).threads([chunk.count, 1, 1]);
+    }
+    if let (Some(points), Some(homes)) = (&points, &mirrored_homes) {
+        offers.put(mirrored::light(graph, space, points, homes, irradiance));
     }
     let diffuse = graph.image("particles.diffuse", vk::Format::R32G32B32A32_SFLOAT, surface.size);
     let pass = Shade {

@@ -27,7 +27,12 @@ const TRACED_STEPS: u32 = 682;
 
 /// What each pass takes, and its name.
 fn ranges(name: &str, vpl_count: u32, traced: bool, traits: DeviceTraits) -> Vec<(String, VplRange)> {
-    let most = (traits.loop_steps + 1) / if traced { TRACED_STEPS } else { STEPS };
+    ranges_of(name, vpl_count, if traced { TRACED_STEPS } else { STEPS }, traits)
+}
+
+/// The same where each VPL takes so many steps.
+pub(super) fn ranges_of(name: &str, vpl_count: u32, steps: u32, traits: DeviceTraits) -> Vec<(String, VplRange)> {
+    let most = (traits.loop_steps + 1) / steps;
     let pass = |part: u32| {
         let (first, end) = (part * most, ((part + 1) * most).min(vpl_count));
         let name = if part == 0 { name.to_owned() } else { format!("{name}-{}", part + 1) };

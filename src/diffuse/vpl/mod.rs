@@ -3,6 +3,7 @@
 mod gather;
 pub(crate) mod interpolate;
 mod ism;
+mod mirrored;
 pub(crate) mod options;
 mod paths;
 pub(crate) mod pyramid;
@@ -14,6 +15,7 @@ use ash::vk;
 
 use self::options::{VplOptions, VplShading, VplVisibility};
 use self::visibility::Visibility;
+use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -26,6 +28,7 @@ impl Method for Vpl {
     const NAME: &'static str = "vpl";
     const SLOT: Slot = Slot::Diffuse;
     type Options = VplOptions;
+    const LIGHTS_MIRRORED: bool = true;
 
     fn light_paths(options: &VplOptions) -> LightPaths {
         LightPaths::up_to(options.bounces)
@@ -34,11 +37,11 @@ impl Method for Vpl {
     fn inputs(options: &VplOptions) -> Inputs {
         let traces = options.visibility == VplVisibility::Traced || options.bounces > 1;
         let rays = if traces { Rays::ToSurfaces } else { Rays::None };
-        Inputs { light_depth: true, light_flux: true, rays }
+        Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() }
     }
 
     fn shaders(options: &VplOptions, software: bool) -> Vec<&'static str> {
-        let mut shaders = vec!["vpl/block_*", "vpl/share", "vpl/vpls", "vpl/gather_pixels"];
+        let mut shaders = vec!["vpl/block_*", "vpl/share", "vpl/vpls", "vpl/gather_pixels", "vpl/gather_mirrored"];
         if options.bounces > 1 {
             shaders.extend(["vpl/copy", "vpl/path_*"]);
         }
@@ -104,6 +107,10 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
     let unblocked = Visibility::new(cx);
     let vpls = paths::with_bounces(cx, options, &unblocked, first_bounce);
     let visibility = unblocked.of(cx, options, vpls);
+    if let Some(points) = cx.frame.offers.get::<MirroredPoints>() {
+        let light = mirrored::light(cx, &points, vpls, &visibility);
+        cx.frame.offers.put(light);
+    }
     let mut made = Made { diffuse, vpls, invocations: None, list: None };
     let level_count = pyramid::level_count(buffer.size, options.levels);
     let shading = match options.shading {

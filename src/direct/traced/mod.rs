@@ -27,6 +27,7 @@ impl Method for Traced {
     const NAME: &'static str = "traced";
     const SLOT: Slot = Slot::Direct;
     type Options = TracedOptions;
+    const SHOWS_LAMPS: bool = true;
 
     fn light_paths(_: &TracedOptions) -> LightPaths {
         LightPaths::up_to(0)

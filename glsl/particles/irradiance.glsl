@@ -1,0 +1,70 @@
+// The irradiance of indirect light at a point of a surface, W/m²: a plane through the irradiances of the particles in the list of the point's particle,
+// fitted by least squares with the weights of a kernel around the point (local linear regression: a mean alone would be pulled inwards at the edges of a
+// surface), and kept between the smallest and the largest of them. The including file binds list_lengths, lists and irradiance.
+#ifndef PARTICLES_IRRADIANCE
+#define PARTICLES_IRRADIANCE
+
+#include "groups/particles.glsl"
+#include "lib/octahedral.glsl"
+#include "particles/lists.glsl"
+
+vec3 irradiance_at(vec3 position, vec3 normal, uint home) {
+    float radius = KERNEL_SPACINGS * particle_spacing;
+    // Moments of offsets (u, v) in units of the radius, and of irradiance with them.
+    float weights = 0.0;
+    vec2 first = vec2(0.0);
+    vec3 second = vec3(0.0);
+    vec3 sum = vec3(0.0);
+    vec3 along_u = vec3(0.0);
+    vec3 along_v = vec3(0.0);
+    vec3 least = vec3(3e38);
+    vec3 most = vec3(0.0);
+    vec3 tangent = normalize(abs(normal.x) > 0.7 ? vec3(-normal.y, normal.x, 0.0) : vec3(0.0, -normal.z, normal.y));
+    vec3 bitangent = cross(normal, tangent);
+    uint start = home * LIST_CAPACITY;
+    uint end = start + texelFetch(list_lengths, int(home)).x;
+    [[dont_unroll]] for (uint place = start; place < end; ++place) {
+        int particle = int(texelFetch(lists, int(place)).x);
+        uvec4 record = texelFetch(particle_places, particle);
+        vec3 way = (uintBitsToFloat(record.xyz) - position) / radius;
+        float inside = max(1.0 - dot(way, way), 0.0);
+        float weight = inside * inside * max(dot(unpack_direction(record.w), normal), 0.0);
+        if (weight <= 0.0) {
+            continue;
+        }
+        vec4 gathered = texelFetch(irradiance, particle);
+        vec3 value = gathered.rgb;
+        // By the share of the surface that the particle stands for.
+        weight *= gathered.w;
+        vec2 offset = vec2(dot(way, tangent), dot(way, bitangent));
+        weights += weight;
+        first += weight * offset;
+        second += weight * vec3(offset.x * offset.x, offset.x * offset.y, offset.y * offset.y);
+        sum += weight * value;
+        along_u += weight * offset.x * value;
+        along_v += weight * offset.y * value;
+        least = min(least, value);
+        most = max(most, value);
+    }
+    if (weights <= 0.0) {
+        return texelFetch(irradiance, int(home)).rgb;
+    }
+    // The plane's value at the origin, by Cramer's rule.
+    float scale = 1.0 / weights;
+    vec2 m = first * scale;
+    vec3 s = second * scale;
+    vec3 mean = sum * scale;
+    vec3 spread = vec3(s.x - m.x * m.x, s.y - m.x * m.y, s.z - m.y * m.y);
+    float determinant = spread.x * spread.z - spread.y * spread.y;
+    // Points on a line or a single one know of no plane.
+    if (determinant <= 1e-4) {
+        return mean;
+    }
+    vec3 cu = along_u * scale - mean * m.x;
+    vec3 cv = along_v * scale - mean * m.y;
+    vec3 slope_u = (cu * spread.z - cv * spread.y) / determinant;
+    vec3 slope_v = (cv * spread.x - cu * spread.y) / determinant;
+    return clamp(mean - slope_u * m.x - slope_v * m.y, least, most);
+}
+
+#endif

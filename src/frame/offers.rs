@@ -1,0 +1,23 @@
+//! What methods of a frame offer to each other while they declare their passes: values found by their type.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Values of different types.
+#[derive(Default)]
+pub(crate) struct Offers {
+    values: RefCell<Vec<Rc<dyn Any>>>,
+}
+
+impl Offers {
+    /// Offers a value to the methods that declare later.
+    pub(crate) fn put<T: 'static>(&self, value: T) {
+        self.values.borrow_mut().push(Rc::new(value));
+    }
+
+    /// What was offered, if it was.
+    pub(crate) fn get<T: 'static>(&self) -> Option<Rc<T>> {
+        self.values.borrow().iter().find_map(|value| value.clone().downcast::<T>().ok())
+    }
+}

@@ -1,0 +1,15 @@
+//! Options of `trace`.
+
+use crate::method::{OptionKind, options};
+
+options! {
+    /// Options of the `trace` specular method (Whitted 1980; Chang, Park & Ihm).
+    TraceOptions, "trace":
+    /// Reflections and refractions on the way to a pixel at most.
+    depth: u32 = 8, draft = 4, high = 16; OptionKind::Integer(1, 32), "events", "linear where glass is seen through glass";
+    /// Rays that a pixel sends out by a wide lobe which reflects a quarter of the light or more; fewer where it reflects less. Noise: at most its inverse
+    /// square root. Smooth surfaces take one.
+    samples: u32 = 4, draft = 1, high = 16; OptionKind::Integer(1, 256), "rays", "linear where something is rough";
+    /// Points of emissive surfaces, and as many directions of the sky, that each surface which mirrors show sends a ray to; fewer where it shows little.
+    light_samples: u32 = 4, draft = 1, high = 16; OptionKind::Integer(1, 256), "rays", "linear";
+}
