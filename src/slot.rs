@@ -75,7 +75,7 @@ impl PixelFilter {
     }
 }
 
-/// Which light the slot `caustics` shows.
+/// Which caustics there are: in the slot `caustics`, and in mirrors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -85,17 +85,21 @@ pub enum CausticPaths {
     All,
     /// Only what met nothing but specular lobes on its way from the light, L S⁺ D E: what photons from specular surfaces can find.
     Specular,
+    /// None in what mirrors and glass show, L (D|S)* S D S⁺ E: what rays that follow reflections find of the slot `specular`. It has besides what of the slot
+    /// `direct` only they find: lamps and the sky behind one surface of glass, and unlit surfaces in mirrors.
+    Unmirrored,
 }
 
 impl CausticPaths {
     /// All of them.
-    pub const ALL: [CausticPaths; 2] = [CausticPaths::All, CausticPaths::Specular];
+    pub const ALL: [CausticPaths; 3] = [CausticPaths::All, CausticPaths::Specular, CausticPaths::Unmirrored];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             CausticPaths::All => "all",
             CausticPaths::Specular => "specular",
+            CausticPaths::Unmirrored => "unmirrored",
         }
     }
 }
@@ -105,7 +109,7 @@ impl CausticPaths {
 pub struct LightPaths {
     /// Scatterings between the light and the first visible surface at most; `None`: no limit.
     pub bounces: Option<u32>,
-    /// Which light the slot `caustics` shows.
+    /// Which caustics there are.
     pub caustics: CausticPaths,
 }
 

@@ -11,6 +11,9 @@ layout(constant_id = 49) const uint LIGHT_PATHS = 1u;
 layout(constant_id = 50) const uint PHOTONS = 0u;
 // 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
 layout(constant_id = 51) const uint SPECULAR_CAUSTICS = 0u;
+// 1: the slot `specular` leaves out caustics in what mirrors and glass show; lamps behind the first surface's glass and unlit surfaces in mirrors are there, not
+// in the slot `direct`.
+layout(constant_id = 52) const uint UNMIRRORED = 0u;
 
 layout(set = 0, binding = 80) uniform samplerBuffer path_rays;
 layout(set = 0, binding = 81) uniform samplerBuffer path_states;

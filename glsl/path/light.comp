@@ -90,7 +90,9 @@ LightSample light_from(Emitter emitter, vec3 position_rs, vec2 random) {
     return sample_punctual(emitter, position_rs);
 }
 
-bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2]) {
+// `light_behind`: the light is on the other side of the surface than the viewer.
+bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2], out bool light_behind) {
+    light_behind = false;
     Vertex vertex = load_vertex(path_vertices, path);
     vec3 to_viewer = -texelFetch(path_rays, 2 * int(path) + 1).xyz;
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
@@ -125,7 +127,8 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2])
         uvec4 last = texelFetch(path_vertices, VERTEX_TEXELS * int(path) + 4);
         arriving *= vec3(unpackHalf2x16(last.z), unpackHalf2x16(last.w).x);
     }
-    if (TRANSMISSIVE != 0u && side < 0.0) {
+    light_behind = side < 0.0;
+    if (TRANSMISSIVE != 0u && light_behind) {
         // Radiance changes by the square of the ratio of indices, as in scatter.
         arriving /= vertex.matter.relative_ior * vertex.matter.relative_ior;
     }
@@ -145,13 +148,18 @@ void main() {
     uint path = queued_path(alive_paths);
     vec4 connection[2];
     vec3 light_of_lobes[2];
-    bool wanted = path != NO_PATH && sample_light(path, connection, light_of_lobes);
+    bool light_behind;
+    bool wanted = path != NO_PATH && sample_light(path, connection, light_of_lobes, light_behind);
     if (wanted) {
         uint flags = texelFetch(path_flags, int(path)).x;
         bool split = push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u;
-        uint slot = push.depth == 0u ? SLOT_DIRECT : split ? SLOT_DIFFUSE : flags & FLAG_SLOT_MASK;
+        bool behind = UNMIRRORED != 0u && push.depth == 0u && light_behind;
+        uint slot = behind ? SLOT_SPECULAR : push.depth == 0u ? SLOT_DIRECT : split ? SLOT_DIFFUSE : flags & FLAG_SLOT_MASK;
         if (SPECULAR_CAUSTICS != 0u && push.depth > 1u && slot == SLOT_CAUSTICS) {
             light_of_lobes[0] = vec3(0.0);
+        }
+        if (UNMIRRORED != 0u && lights_mirrored(flags)) {
+            light_of_lobes[1] = vec3(0.0);
         }
         connection_rays[2u * path] = connection[0];
         connection_rays[2u * path + 1u] = vec4(connection[1].xyz, uintBitsToFloat(slot));

@@ -25,14 +25,15 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 // The slot that light found from the second vertex on goes to, and what later kernels need to know of the lobes so far.
-uint flags_after(uint flags, uint lobe) {
+uint flags_after(uint flags, uint lobe, bool behind) {
     bool diffuse = lobe == LOBE_DIFFUSE;
     uint slot = flags & FLAG_SLOT_MASK;
-    uint kept = flags & (FLAG_FIRST_DIFFUSE | FLAG_ALL_SPECULAR);
+    uint kept = flags & (FLAG_FIRST_DIFFUSE | FLAG_ALL_SPECULAR | FLAG_FIRST_BEHIND);
     kept |= (flags & FLAG_ALL_SPECULAR) == 0u ? FLAG_BEYOND_DIFFUSE : 0u;
     if (push.depth == 0u) {
         slot = SLOT_SPECULAR;
         kept |= diffuse ? FLAG_FIRST_DIFFUSE : 0u;
+        kept |= UNMIRRORED != 0u && behind ? FLAG_FIRST_BEHIND : 0u;
     } else if (push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u) {
         slot = diffuse ? SLOT_DIFFUSE : SLOT_CAUSTICS;
     }
@@ -64,6 +65,9 @@ bool scatter(uint path) {
     float side = dot(vertex.geometric_normal, direction);
     bool later = FROM_LIGHT == 0u && push.depth > 1u;
     if (SPECULAR_CAUSTICS != 0u && later && drawn.lobe == LOBE_DIFFUSE && (new_flags[path] & FLAG_SLOT_MASK) == SLOT_CAUSTICS) {
+        return false;
+    }
+    if (UNMIRRORED != 0u && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && lights_mirrored(new_flags[path])) {
         return false;
     }
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {
@@ -111,7 +115,7 @@ bool scatter(uint path) {
     }
     float ratio = LIGHT_PATHS != 0u ? ratio_after(vertex, drawn, viewer, arrival.w) : 0.0;
     new_states[path] = vec4(throughput / survival, ratio);
-    new_flags[path] = flags_after(new_flags[path], drawn.lobe) | floatBitsToUint(vertex.target_density);
+    new_flags[path] = flags_after(new_flags[path], drawn.lobe, side < 0.0) | floatBitsToUint(vertex.target_density);
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
     new_rays[2u * path] = vec4(origin, abs(side));
     new_rays[2u * path + 1u] = vec4(direction, drawn.density);

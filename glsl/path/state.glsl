@@ -21,6 +21,13 @@ const uint FLAG_FIRST_DIFFUSE = 8u;      // a camera's path: its first vertex sc
 const uint FLAG_LAST_SPECULAR = 16u;     // the last vertex scattered specularly
 const uint FLAG_ALL_SPECULAR = 32u;      // every vertex so far did
 const uint FLAG_BEYOND_DIFFUSE = 64u;    // some vertex before the last scattered diffusely
+const uint FLAG_FIRST_BEHIND = 128u;     // the first vertex transmitted; told only where the slots ask for it (UNMIRRORED)
+
+// Whether the last vertex is a diffuse one that mirrors or glass show: specular lobes that light it make caustics.
+bool lights_mirrored(uint flags) {
+    const uint others = FLAG_FIRST_DIFFUSE | FLAG_LAST_SPECULAR | FLAG_ALL_SPECULAR | FLAG_BEYOND_DIFFUSE;
+    return (flags & FLAG_SLOT_MASK) == SLOT_SPECULAR && (flags & others) == 0u;
+}
 
 // A path that a light sends to a target carries the triangle's number in the bits above; one that scattered the
 // density with which light paths are sent to the last vertex, the upper half of a float.

@@ -57,8 +57,9 @@ void add_radiance(uint path, uint slot, vec3 radiance) {
 }
 
 // The slot of light that the path runs into here.
-uint slot_of_emission(uint flags) {
-    return push.depth == 0u ? SLOT_EMISSION : push.depth == 1u ? SLOT_DIRECT : flags & FLAG_SLOT_MASK;
+uint slot_of_emission(uint flags, bool unlit) {
+    bool mirrored = UNMIRRORED != 0u && push.depth == 1u && ((flags & FLAG_FIRST_BEHIND) != 0u || (unlit && (flags & FLAG_FIRST_DIFFUSE) == 0u));
+    return mirrored ? SLOT_SPECULAR : push.depth == 0u ? SLOT_EMISSION : push.depth == 1u ? SLOT_DIRECT : flags & FLAG_SLOT_MASK;
 }
 
 // Returns whether the path goes on from here.
@@ -70,7 +71,7 @@ bool meet_surface(uint path) {
     uint index = floatBitsToUint(hit.w);
     if (index == 0xFFFFFFFFu) {
         if (FROM_LIGHT == 0u && max3(push.sky) > 0.0) {
-            add_radiance(path, slot_of_emission(flags), state.rgb * push.sky);
+            add_radiance(path, slot_of_emission(flags, false), state.rgb * push.sky);
         }
         return false;
     }
@@ -137,7 +138,7 @@ bool meet_surface(uint path) {
                 }
                 weight = ray.density / (ray.density + others);
             }
-            add_radiance(path, slot_of_emission(flags), state.rgb * transmittance * emitted * weight);
+            add_radiance(path, slot_of_emission(flags, unlit), state.rgb * transmittance * emitted * weight);
         }
     }
     Lobes lobes = lobes_of_material(material, point);

@@ -47,6 +47,8 @@ pub(super) struct Variants {
     pub(super) photons: u32,
     /// The slot `caustics` leaves out light that some diffuse lobe scattered on its way.
     pub(super) specular_caustics: u32,
+    /// The slot `specular` leaves out caustics, and has lamps behind the first surface's glass.
+    pub(super) unmirrored: u32,
 }
 
 impl Variants {
@@ -55,6 +57,7 @@ impl Variants {
             light_paths: u32::from(scene.needs_light_paths(view.bounces)),
             photons: 0,
             specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
+            unmirrored: u32::from(view.caustics == CausticPaths::Unmirrored),
         }
     }
 }
@@ -136,6 +139,7 @@ impl Paths {
             light_paths: self.variants.light_paths,
             photons: self.variants.photons,
             specular_caustics: self.variants.specular_caustics,
+            unmirrored: self.variants.unmirrored,
         }
     }
 

@@ -8,7 +8,7 @@ use crate::estimator::{Estimating, Estimator, Samples};
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, for_all_methods};
 use crate::scene::Facts;
-use crate::slot::{LightPaths, PixelFilter, Slot};
+use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Pipelines, VulkanError};
 
 /// Declares a method's passes with its options out of all settings.
@@ -182,6 +182,11 @@ impl Settings {
     /// What a reference of equal light paths shows in `slot`. Slots that no indirect method fills go with `diffuse`.
     pub fn light_paths(&self, slot: Slot) -> LightPaths {
         let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].contains(&slot);
+        // What leaves one of the two is in the other.
+        let specular = if slot == Slot::Direct { self.light_paths(Slot::Specular) } else { LightPaths::default() };
+        if specular.caustics == CausticPaths::Unmirrored {
+            return specular;
+        }
         match self.methods.filler(slot).filter(|_| indirect) {
             Some(Filler::Method(method)) => (method.light_paths)(self),
             Some(Filler::Estimator(estimator)) => (estimator.light_paths)(self),

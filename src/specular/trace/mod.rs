@@ -13,7 +13,7 @@ use crate::frame::mirrored::MirroredLight;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
-use crate::slot::{LightPaths, Slot};
+use crate::slot::{CausticPaths, LightPaths, Slot};
 
 /// Rays that follow reflections and refractions.
 pub(crate) struct Trace;
@@ -24,7 +24,7 @@ impl Method for Trace {
     type Options = TraceOptions;
 
     fn light_paths(_: &TraceOptions) -> LightPaths {
-        LightPaths::up_to(None)
+        LightPaths { bounces: None, caustics: CausticPaths::Unmirrored }
     }
 
     fn inputs(_: &TraceOptions) -> Inputs {
