@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/light_views.glsl"
 #include "groups/surface.glsl"
+#include "lib/narrow.glsl"
 #include "lib/pixels.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface_packing.glsl"
@@ -21,9 +22,10 @@ layout(push_constant, scalar) uniform Push {
     uint light_count;
     float normal_offset;  // in shadow texels at the receiver
     int filter_radius;    // (2·radius + 1)² taps
+    uint diffuse_from;    // lights from this one on, samples of emissive surfaces and the sky, show in no narrow lobe: another method shows what they stand for
 } push;
 
-vec3 reflected_radiance(Surface point, vec3 to_eye, Light light) {
+vec3 reflected_radiance(Surface point, vec3 to_eye, Light light, bool shows_in_narrow) {
     Illumination illumination = illuminate(light, point.position_rs);
     float cosine = dot(point.normal, illumination.to_light);
     if (min(cosine, dot(point.geometric_normal, illumination.to_light)) <= 0.0 || max3(illumination.irradiance) <= 0.0) {
@@ -41,6 +43,9 @@ vec3 reflected_radiance(Surface point, vec3 to_eye, Light light) {
             ShadowFilter(push.normal_offset, push.filter_radius));
     }
     vec3 brdf = HAS_SPECULAR != 0u ? surface_brdf(point, illumination.to_light, to_eye) : point.diffuse_albedo * INVERSE_PI;
+    if (!shows_in_narrow && is_narrow(point.roughness * point.roughness)) {
+        brdf -= specular_brdf(point, illumination.to_light, to_eye);
+    }
     return brdf * illumination.irradiance * (cosine * visibility);
 }
 
@@ -58,7 +63,7 @@ void main() {
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 to_eye = direction_to_eye(camera, position_rs);
         for (uint i = 0u; i < push.light_count; ++i) {
-            radiance += reflected_radiance(point, to_eye, load_light(lights, i));
+            radiance += reflected_radiance(point, to_eye, load_light(lights, i), i < push.diffuse_from);
         }
     }
     imageStore(direct, pixel, vec4(radiance, 1.0));

@@ -6,7 +6,8 @@
 #include "lib/emissive_points.glsl"
 #include "lib/emitters.glsl"
 #include "lib/sobol.glsl"
-#include "trace/narrow.glsl"
+#include "lib/narrow.glsl"
+#include "trace/samples.glsl"
 
 // What emissive surfaces send to one listed point, and it to its pixel, from points y drawn by power:
 //
@@ -58,7 +59,7 @@ void main() {
     Mirrored point = load_mirrored(mirrored_points, index);
     Receiver receiver = receiver_of(point);
     Scattering scattering = scattering_of(receiver);
-    uint samples = sample_count(push.sample_count, max3(point.weight));
+    uint samples = samples_for(push.sample_count, max3(point.weight));
     // By the place: the order of the list differs from run to run.
     uvec3 bits = floatBitsToUint(point.surface.position_rs);
     uint seed = seed_of(mix_bits(bits.x ^ mix_bits(bits.y ^ mix_bits(bits.z))), 0u);

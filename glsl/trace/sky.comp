@@ -3,7 +3,7 @@
 #include "groups/scene_rays.glsl"
 #include "trace/points.glsl"
 #include "lib/sobol.glsl"
-#include "trace/narrow.glsl"
+#include "trace/samples.glsl"
 
 // What the sky sends to the diffuse lobe of one listed point, and that to its pixel, by directions spread by the cosine; specular lobes send rays of their own
 // (walk.comp).
@@ -25,7 +25,7 @@ void main() {
     vec3 radiance = vec3(0.0);
     if (max3(point.surface.diffuse_albedo) > 0.0) {
         Scattering scattering = scattering_of(receiver);
-        uint samples = sample_count(push.sample_count, max3(point.weight));
+        uint samples = samples_for(push.sample_count, max3(point.weight));
         uvec3 bits = floatBitsToUint(point.surface.position_rs);
         uint seed = seed_of(mix_bits(bits.x ^ mix_bits(bits.y ^ mix_bits(bits.z))), 1u);
         [[dont_unroll]] for (uint i = 0u; i < samples; ++i) {

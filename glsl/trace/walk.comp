@@ -12,7 +12,8 @@
 #include "lib/pixels.glsl"
 #include "lib/sobol.glsl"
 #include "lib/surface_packing.glsl"
-#include "trace/narrow.glsl"
+#include "lib/narrow.glsl"
+#include "trace/samples.glsl"
 
 // Follows reflections and refractions from the surface at one pixel (Whitted 1980; the preliminary pass of Chang et al. 4.3.1). Lists each surface that they
 // come to, with what of its radiance the pixel sees,
@@ -85,7 +86,7 @@ uint rays_of(Vertex vertex, uint lobe, float cosine) {
     if (vertex.event > 0u || vertex.matter.alpha < SMOOTH_ROUGHNESS * SMOOTH_ROUGHNESS) {
         return 1u;
     }
-    return sample_count(push.sample_count, max3(lobe == 0u ? fresnel(vertex.matter, cosine) : vertex.matter.transmission));
+    return samples_for(push.sample_count, max3(lobe == 0u ? fresnel(vertex.matter, cosine) : vertex.matter.transmission));
 }
 
 // Leaves the ways that start at a vertex. `number`: of the sample.

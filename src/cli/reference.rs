@@ -40,7 +40,8 @@ pub(crate) struct ReferenceArgs {
     /// Scatterings between the light and the first visible surface at most; 0 is direct light [default: no limit]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
-    /// Which light the slot caustics shows: all of it, or only what met nothing but specular lobes on its way from the light
+    /// Which caustics there are: all; in the slot caustics only light that met nothing but specular lobes on its way; none in what mirrors and glass show, and lamps
+    /// behind one surface of glass in the slot specular
     #[arg(long, value_parser = caustics(), default_value = "all")]
     caustics: CausticPaths,
     /// Where in a pixel light is sampled

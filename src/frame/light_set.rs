@@ -45,6 +45,8 @@ pub(crate) struct LightDetail {
 pub(crate) struct LightSet {
     key: u64,
     pub(crate) lights: Vec<types::Light>,
+    /// The first ones are no samples of anything.
+    pub(crate) punctual_count: u32,
     pub(crate) atlas: Atlas,
 }
 
@@ -66,10 +68,11 @@ impl LightSet {
         }
         let mut builder = Builder { data, detail, lights: Vec::new(), shapes: Vec::new(), corners: None };
         builder.add_punctual(scene);
+        let punctual_count = builder.lights.len() as u32;
         builder.add_emitters(scene);
         builder.add_sky(scene);
         let atlas = Atlas::new(builder.shapes, detail.filter_radius, largest_side);
-        LightSet { key, lights: builder.lights, atlas }
+        LightSet { key, lights: builder.lights, punctual_count, atlas }
     }
 }
 

@@ -60,6 +60,7 @@ mod skipping;
 mod splat_bench;
 mod sppm;
 mod tonemap;
+mod trace;
 mod traced_direct;
 mod traits;
 mod vpl_paths;

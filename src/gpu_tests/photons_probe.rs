@@ -122,7 +122,7 @@ impl OnDevice<'_> {
         let request = FrameRequest::new([8, 8], view(DVec3::ONE, DVec3::ZERO));
         let shared = Shared::declare(&mut graph, scene, data, &request);
         let inputs = Method::inputs(&settings.photons);
-        let frame = shared.inputs(&mut graph, data, set, Some(traced), inputs);
+        let frame = shared.inputs(&mut graph, data, set, Some(traced), inputs, settings);
         let made = trace_all(&mut FrameCx::new(&mut graph, &frame, inputs), &settings.photons);
         let reads = [
             graph.read_back_buffer(made.landed.photons),

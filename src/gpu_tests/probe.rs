@@ -62,7 +62,7 @@ pub(super) fn probe(
         (inputs.rays != Rays::None).then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
     let mut graph = Graph::new(&mut store);
     let shared = Shared::declare(&mut graph, scene, &data, request);
-    let frame = shared.inputs(&mut graph, &data, &set, traced.as_ref(), inputs, false);
+    let frame = shared.inputs(&mut graph, &data, &set, traced.as_ref(), inputs, settings);
     let mut declared = Declared {
         gbuffer: shared.surface.clone(),
         reflective: frame.lights.as_ref().and_then(|lights| lights.reflective),

@@ -125,7 +125,7 @@ impl Shared {
         set: &'a LightSet,
         traced: Option<&'a TracedScene>,
         inputs: Inputs,
-        mirrored_lamps: bool,
+        settings: &Settings,
     ) -> FrameInputs<'a> {
         let lights = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, inputs.light_flux));
         FrameInputs {
@@ -140,7 +140,8 @@ impl Shared {
             lights,
             traced,
             offers: Offers::default(),
-            mirrored_lamps,
+            mirrored_lamps: settings.methods.shows_lamps(),
+            follows_reflections: settings.follows_reflections(),
         }
     }
 }
@@ -161,11 +162,7 @@ pub(crate) fn declare(
     if lights.lights.is_empty() && methods.iter().any(|wanted| wanted.inputs.light_views()) {
         graph.skip("light-views", "no light");
     }
-    let mirrored_lamps = settings.methods.filler(Slot::Direct).is_some_and(|filler| match filler {
-        Filler::Method(method) => method.shows_lamps,
-        Filler::Estimator(_) => true,
-    });
-    let frame = shared.inputs(graph, data, lights, traced, inputs_of(&methods), mirrored_lamps);
+    let frame = shared.inputs(graph, data, lights, traced, inputs_of(&methods), settings);
     let mut slots: Vec<(Slot, ImageRef)> = Vec::new();
     if let (Some(emission), true) = (shared.surface.emission, settings.methods.filler(Slot::Emission).is_none()) {
         slots.push((Slot::Emission, emission));

@@ -135,7 +135,22 @@ impl Methods {
     }
 }
 
+impl Methods {
+    /// Whether mirrors show lamps and the sky in the slot `direct`.
+    pub(super) fn shows_lamps(&self) -> bool {
+        self.filler(Slot::Direct).is_some_and(|filler| match filler {
+            Filler::Method(method) => method.shows_lamps,
+            Filler::Estimator(_) => true,
+        })
+    }
+}
+
 impl Settings {
+    /// Whether a method of the slot `specular` follows reflections.
+    pub(super) fn follows_reflections(&self) -> bool {
+        matches!(self.methods.filler(Slot::Specular), Some(Filler::Method(method)) if (method.inputs)(self).mirrored_light)
+    }
+
     /// What the settings ask for and their methods do less of, a sentence each. A renderer that takes the settings warns of it.
     pub fn reduced(&self) -> Vec<String> {
         let methods = Slot::ALL.into_iter().filter_map(|slot| match self.methods.filler(slot) {
