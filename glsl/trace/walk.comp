@@ -80,6 +80,7 @@ uint waiting_count = 0u;
 uint head = 0u;
 vec3 shining_sum = vec3(0.0);
 uint ray_count = 0u;
+uint sample_count = 1u;  // of the pixel
 
 // Of the lobe that reflects (0) or transmits (1).
 uint rays_of(Vertex vertex, uint lobe, float cosine) {
@@ -102,7 +103,8 @@ void send_on(Vertex vertex, uint number) {
     [[dont_unroll]] for (uint lobe = 0u; lobe < (TRANSMISSIVE != 0u ? 2u : 1u); ++lobe) {
         float share = lobe == 0u ? shares.y : shares.z;
         uint rays = rays_of(vertex, lobe, viewer.z);
-        if (share <= 0.0 || number >= rays || (!splits && lobe != chosen)) {
+        sample_count = vertex.event == 0u && share > 0.0 ? max(sample_count, rays) : sample_count;
+        if (share <= 0.0 || (vertex.event == 0u && number >= rays) || (!splits && lobe != chosen)) {
             continue;
         }
         LobeSample drawn = sample_lobes(vertex.matter, viewer, shares.x + (lobe == 0u ? 0.5 * shares.y : shares.y + 0.5 * shares.z), random.xy);
@@ -232,12 +234,10 @@ void main() {
     }
     Vertex first;
     if (vertex_of_pixel(pixel, size, first)) {
-        float cosine = max(dot(first.normal, first.to_viewer), 1e-4);
-        uint rays = max(rays_of(first, 0u, cosine), TRANSMISSIVE != 0u ? rays_of(first, 1u, cosine) : 1u);
         uint number = 0u;
         Vertex vertex = first;
         bool goes_on = true;
-        [[dont_unroll]] while (number < rays) {
+        [[dont_unroll]] while (number < sample_count) {
             if (goes_on) {
                 send_on(vertex, number);
             }
