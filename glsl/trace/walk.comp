@@ -43,9 +43,9 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 // Events at which both reflection and refraction are followed.
-const uint SPLITS = 2u;
+const uint SPLITS = 4u;
 // Ways that carry less end by chance.
-const float LITTLE = 0.05;
+const float LITTLE = 0.01;
 // A lobe below this roughness takes one ray: its reflections are sharp.
 const float SMOOTH_ROUGHNESS = 0.05;
 const uint MOST_WAITING = SPLITS + 1u;
