@@ -234,6 +234,9 @@ mod tests {
         assert_eq!(path.filter(), PixelFilter::Box);
         let rsm = of(Technique::Rsm).with(|rsm| rsm.path = path.path.clone());
         assert_eq!((rsm.bounces(), rsm.filter()), (Some(1), PixelFilter::Center));
+        let caustics = |slot| of(Technique::Particles).light_paths(slot).caustics;
+        assert_eq!([Slot::Direct, Slot::Specular].map(caustics), [CausticPaths::Unmirrored; 2]);
+        assert_eq!([Slot::Emission, Slot::Diffuse, Slot::Caustics].map(caustics), [CausticPaths::All; 3]);
         let filled = |technique| Slot::ALL.into_iter().filter(move |slot| of(technique).methods.fills(*slot));
         assert!(filled(Technique::Direct).eq([Slot::Emission, Slot::Direct]));
         assert!(filled(Technique::Rsm).eq([Slot::Emission, Slot::Direct, Slot::Diffuse]));

@@ -126,6 +126,7 @@ const CHANGES: &[(&str, Change)] = &[
     ("the estimator", |parts| parts.request.estimator = Estimator::Sppm),
     ("no bounces", |parts| parts.request.bounces = Some(0)),
     ("caustics of specular paths alone", |parts| parts.request.caustics = CausticPaths::Specular),
+    ("no caustics in mirrors", |parts| parts.request.caustics = CausticPaths::Unmirrored),
     ("one bounce", |parts| parts.request.bounces = Some(1)),
     ("the filter", |parts| parts.request.filter = PixelFilter::Box),
     ("the seed", |parts| parts.request.seed = 1),
