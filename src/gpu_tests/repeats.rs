@@ -73,12 +73,15 @@ fn a_resource_that_is_gone_is_made_again() {
     let lists = [("photons.trace", "march"), ("photons.resolution", "32"), ("vpl.visibility", "ism")];
     let mut ambient = small(Technique::Direct, &[("ambient.rays", "4")]);
     ambient.methods.set(Slot::Diffuse, "ambient").expect("a method");
+    let mut mirrors = small(Technique::Hybrid, &[]);
+    mirrors.methods.set(Slot::Specular, "trace").expect("a method");
     let all = [
         ("textured", small(Technique::Rsm, &[])),
         ("ring", small(Technique::Hybrid, &[("photons.downscale", "1")])),
         ("ring", small(Technique::Hybrid, &lists)),
         ("cornell-point", small(Technique::Path, &[("path.spp", "1")])),
         ("cornell-point", ambient),
+        ("ring", mirrors),
     ];
     for (name, settings) in all {
         let scene = builtin(name);

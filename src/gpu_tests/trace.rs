@@ -10,7 +10,7 @@ use super::session::Session;
 use crate::renderer::{
     DiffuseMethod, DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, SpecularMethod, Technique, Timing,
 };
-use crate::scene::{CameraView, LightKind, Material, Scene};
+use crate::scene::{CameraView, Light, LightId, LightKind, Material, Scene};
 use crate::slot::{CausticPaths, PixelFilter};
 
 const SIZE: [u32; 2] = [64, 48];
@@ -269,4 +269,27 @@ fn vpl_is_asked_of_its_light_alone() {
     let ran = |name: &str| frame.timings.passes.iter().any(|pass| pass.skipped.is_none() && pass.full_name() == name);
     assert!(ran("diffuse/vpl/gather/mirrored.0") && !ran("diffuse/vpl/gather/regions"));
     assert_eq!(frame.slots.keys().collect::<Vec<_>>(), [&Slot::Specular]);
+}
+
+#[test]
+fn what_did_not_change_stands() {
+    let session = Session::open();
+    let (mut scene, camera) = mirrored_box();
+    let mut settings = traced(Technique::Particles);
+    settings.particles.count = 500;
+    let asked = FrameRequest { timing: Timing::Passes, ..request(SIZE, camera, &[Slot::Specular]) };
+    let mut renderer = session.renderer(&settings);
+    let mut ran = |scene: &Scene| {
+        let frame = renderer.render(scene, &asked).expect("a frame");
+        let running = frame.timings.passes.into_iter().filter(|pass| pass.skipped.is_none());
+        running.map(|pass| pass.full_name()).collect::<Vec<_>>()
+    };
+    assert!(ran(&scene).iter().any(|pass| pass == "specular/trace/walk/rays.0"));
+    assert_eq!(ran(&scene), Vec::<String>::new());
+    let light = Light { intensity: [1.0, 2.0, 3.0], ..scene.lights()[0].clone() };
+    scene.set_light(LightId(0), light).expect("sound");
+    let again = ran(&scene);
+    let has = |name: &str| again.iter().any(|pass| pass.starts_with(name));
+    assert!(has("specular/trace/light/punctual.0") && has("diffuse/particles/mirrored.0"), "{again:?}");
+    assert!(!has("specular/trace/walk") && !has("diffuse/particles/find"), "{again:?}");
 }
