@@ -5,6 +5,7 @@
 // One pixel of the G-buffer: the depth of the surface that is seen there, by the plane of its triangle (geometry/plane_depth.glsl).
 
 layout(set = 0, binding = 0) uniform CameraBlock { Camera camera; };
+layout(set = 0, binding = 1) uniform usampler2D triangles;  // rg32ui, of each pixel
 
 layout(push_constant, scalar) uniform Push { uvec2 size; } push;
 
@@ -19,6 +20,7 @@ void main() {
     vec3 from = orthographic ? camera.position_rs + across : camera.position_rs;
     vec3 ray = orthographic ? camera.forward : camera.forward + across;
     float rasterised = orthographic ? camera.near + (1.0 - gl_FragCoord.z) * camera.depth_range : camera.near / gl_FragCoord.z;
-    float z = distance_to_triangle(drawn, camera.position_rs, from, ray, camera.forward, camera.near, rasterised);
+    Sight sight = Sight(camera.position_rs, from, ray, camera.forward, camera.near);
+    float z = distance_to_drawn(drawn, triangles, ivec2(0), ivec2(push.size), sight, rasterised);
     depth = orthographic ? 1.0 - (z - camera.near) / camera.depth_range : camera.near / z;
 }

@@ -1,15 +1,3 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "groups/geometry.glsl"
-#include "gbuffer/seen.glsl"
-
-// One vertex of what the G-buffer's depth shows already: the same place to the bit.
-
-layout(location = 0) in vec3 position;
-
-layout(location = 2) flat out uvec2 drawn;
-
-void main() {
-    gl_Position = seen_position(position, gl_InstanceIndex);
-    drawn = uvec2(gl_InstanceIndex, gl_VertexIndex);
-}
+#include "gbuffer/numbered_vertex.glsl"

@@ -1,14 +1,3 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "light_views/view.glsl"
-
-// One vertex of what a light view's depth shows already: the same place to the bit.
-
-layout(location = 0) in vec3 position;
-
-layout(location = 2) flat out uvec2 drawn;
-
-void main() {
-    gl_Position = clip_position(position, gl_InstanceIndex);
-    drawn = uvec2(gl_InstanceIndex, gl_VertexIndex);
-}
+#include "light_views/numbered_vertex.glsl"

@@ -10,6 +10,9 @@ layout(set = 0, binding = 1) buffer Hits { uint hits[]; };
 
 layout(location = 0) flat in uint ray_index;
 
+// Nothing that the test finds in the column is left out for rounding.
+const float WIDENED_COLUMN = 1.01 * LINE_COLUMN;
+
 void main() {
     uvec2 cell = uvec2(gl_FragCoord.xy);
     uint row = push.view_index * push.resolution + cell.y;
@@ -29,7 +32,12 @@ void main() {
         // A ray along the column is in it all the way: neither time nor depth tells it from the list.
         bool passes = is_finite(depths) && is_finite(t - reach);
         bool beyond = min(depths.x, depths.y) > uintBitsToFloat(~list.z) || max(depths.x, depths.y) < uintBitsToFloat(list.y);
-        bool behind = known != HIT_NONE && t - reach > uintBitsToFloat(known);
+        // What is nearer than the hit that is known is found whichever is known first: the way through the column is exact, and all of it before the eye.
+        int axis = speed.x > speed.y ? 0 : 1;
+        vec2 sides = center[axis] + vec2(-WIDENED_COLUMN, WIDENED_COLUMN);
+        vec2 ends = (sides * along.start.z - along.start[axis]) / (along.step[axis] - sides * along.step.z);
+        bool bounded = is_finite(ends) && along.start.z + min(ends.x * along.step.z, ends.y * along.step.z) > 0.0;
+        bool behind = known != HIT_NONE && bounded && min(ends.x, ends.y) > uintBitsToFloat(known);
         if (!passes || (!beyond && !behind)) {
             Column column = column_of(view, center);
             float nearest = NO_HIT_DISTANCE;

@@ -36,8 +36,9 @@ void main() {
     if (texelFetch(places, photon).x != NO_CELL) {
         Extent extent = disc_extent(camera, center, normal, place.w, height, push.image_size, push.downscale);
         vec2 size = vec2(lattice_size(push.image_size, push.downscale));
-        vec2 low = clamp(extent.center - extent.radius, vec2(0.0), size);
-        vec2 high = clamp(extent.center + extent.radius, vec2(0.0), size);
+        // Around the samples that it holds, in whole squares: rasterisers move other edges, by up to 1/16 of a sample.
+        vec2 low = clamp(ceil(extent.center - extent.radius - 0.5), vec2(0.0), size);
+        vec2 high = clamp(floor(extent.center + extent.radius + 0.5), low, size);
         // Corners 3 1 2 and 2 1 0: two triangles.
         uint corner = 0x312210u >> (4u * (5u - gl_VertexIndex)) & 3u;
         vec2 position = vec2((corner & 1u) != 0u ? high.x : low.x, (corner & 2u) != 0u ? high.y : low.y);

@@ -10,6 +10,7 @@ use super::view_layout::{Atlas, ViewShape, ViewSource};
 use crate::graph::hash_of;
 use crate::scene::{LightKind, PlacedLight, Scene};
 use crate::shaders::types;
+use crate::vulkan::Device;
 
 const POINT: u32 = 0;
 const SPOT: u32 = 1;
@@ -24,6 +25,11 @@ const WIDEST_CONE: f64 = 75.5 * PI / 180.0;
 const NEAR: f64 = 1.0 / 32768.0;
 /// The same over the scene's radius, for a light that stands on the origin.
 const LEAST_NEAR: f64 = 1e-9;
+/// How far before its surface an emitter's view along the normal stands where vertices are rounded coarsely, over its near plane and over the scene's radius. Such a
+/// rasteriser (SwiftShader) takes which way a triangle faces from its corners as they are projected, not as they are clipped: a corner in the plane
+/// of the eye overflows, and walls that end in the emitter's plane would be missing.
+const LIFT: f64 = 2.0;
+const LEAST_LIFT: f64 = 2e-6;
 
 /// What stands for the lights, and how large their views are, in texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,7 +63,7 @@ impl LightSet {
         scene: &Scene,
         data: &SceneData,
         detail: LightDetail,
-        largest_side: u32,
+        device: &Device,
     ) -> LightSet {
         let revisions = scene.revisions();
         // Directional views are fitted to the geometry.
@@ -66,11 +72,13 @@ impl LightSet {
         if held.key == key {
             return held;
         }
-        let mut builder = Builder { data, detail, lights: Vec::new(), shapes: Vec::new(), corners: None };
+        let lifted = device.traits().plane_depths;
+        let mut builder = Builder { data, detail, lifted, lights: Vec::new(), shapes: Vec::new(), corners: None };
         builder.add_punctual(scene);
         let punctual_count = builder.lights.len() as u32;
         builder.add_emitters(scene);
         builder.add_sky(scene);
+        let largest_side = device.limits().max_image_dimension2_d;
         let atlas = Atlas::new(builder.shapes, detail.filter_radius, largest_side);
         LightSet { key, lights: builder.lights, punctual_count, atlas }
     }
@@ -79,6 +87,8 @@ impl LightSet {
 struct Builder<'a> {
     data: &'a SceneData,
     detail: LightDetail,
+    /// Whether views along the normals of emitters stand before their surfaces.
+    lifted: bool,
     lights: Vec<types::Light>,
     shapes: Vec<ViewShape>,
     /// All vertices in render space, gathered when the first directional light needs them.
@@ -147,7 +157,11 @@ impl Builder<'_> {
                     range: 0.0,
                     view_count: 0,
                 };
-                self.add(light, ViewShape::hemicube(source, axes_around(normal, node)));
+                let mut shapes = ViewShape::hemicube(source, axes_around(normal, node));
+                if self.lifted {
+                    shapes[0] = shapes[0].lifted((LIFT * source.near).max(LEAST_LIFT * self.data.radius));
+                }
+                self.add(light, shapes);
             }
         }
     }

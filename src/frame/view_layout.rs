@@ -95,6 +95,11 @@ impl ViewShape {
         faces
     }
 
+    /// The view from so many metres forward of where it is.
+    pub(crate) fn lifted(&self, metres: f64) -> ViewShape {
+        ViewShape { origin_rs: self.origin_rs + self.axes.z_axis * metres, ..self.clone() }
+    }
+
     /// A parallel view of the box `low` to `high`, given in the axes' coordinates, that begins at `start` or where the box does.
     ///
     /// Its depth counts from the far end, where the box is: reversed, it is as precise there as if the view began at the box, however far

@@ -15,6 +15,8 @@ use crate::renderer::{ColorImage, Frame, Slot};
 use crate::scene::{Camera, CameraId, LightId, LightKind, NodeId, Projection, Scene};
 
 const BOUND: f64 = 1e-3;
+/// Over the bound, where a rasteriser moves vertices to 1/16 of a pixel instead of 1/256: so much farther may rounding move an edge.
+const COARSE: f64 = 5.0;
 
 /// Applies `transform` to everything; `scale` is the factor that it holds.
 pub(super) fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Scene {
@@ -73,6 +75,8 @@ fn difference(original: &ColorImage, copy: &ColorImage) -> Difference {
 fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
     let session = Session::open();
     let settings = settings(&[]);
+    let coarse = session.context.shared_device().traits().plane_depths;
+    let bound = if coarse { COARSE * BOUND } else { BOUND };
     for name in ["cornell-spot", "cornell-panel", "lights"] {
         let scene = builtin(name);
         let image = |scene: &Scene| {
@@ -90,9 +94,9 @@ fn assert_invariant(what: &str, transform: DAffine3, scale: f64) {
         let image = |frame: &Frame| frame.image.clone().expect("it was asked for");
         let whole = of(what, &image(&original), &image(&copy));
         let rmse = direct.rmse.max(whole.rmse);
-        assert!(rmse <= BOUND, "{name} {what}: rmse {rmse:.1e}");
-        assert!(direct.most <= BOUND, "{name} {what}: pixels of direct light {:.1e}", direct.most);
-        assert!(whole.most <= 10.0 * BOUND, "{name} {what}: pixels {:.1e}", whole.most);
+        assert!(rmse <= bound, "{name} {what}: rmse {rmse:.1e}");
+        assert!(direct.most <= bound, "{name} {what}: pixels of direct light {:.1e}", direct.most);
+        assert!(whole.most <= 10.0 * bound, "{name} {what}: pixels {:.1e}", whole.most);
     }
 }
 

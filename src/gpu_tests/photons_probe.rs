@@ -104,13 +104,12 @@ impl OnDevice<'_> {
         let store = session.store();
         let device = store.device().clone();
         let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
-        let limit = device.limits().max_image_dimension2_d;
         let set = LightSet::update(
             LightSet::default(),
             scene,
             &data,
             settings.lights.detail(settings.shadow_map.filter_radius),
-            limit,
+            &device,
         );
         let traced = TracedScene::new(&device, scene).expect("the scene fits the device");
         OnDevice { scene, settings, store, data, set, traced }

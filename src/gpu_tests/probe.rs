@@ -52,9 +52,8 @@ pub(super) fn probe(
     let mut store = session.store();
     let device = store.device().clone();
     let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
-    let limit = device.limits().max_image_dimension2_d;
     let detail = settings.lights.detail(settings.shadow_map.filter_radius);
-    let set = LightSet::update(LightSet::default(), scene, &data, detail, limit);
+    let set = LightSet::update(LightSet::default(), scene, &data, detail, &device);
     let camera = crate::frame::camera::camera(&request.camera, request.size, data.origin);
     let methods = wanted_methods(settings, &scene.facts(), &set, |slot| request.wants(slot));
     let inputs = inputs_of(&methods);

@@ -6,7 +6,9 @@ use super::session::Session;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph, Store};
 use crate::renderer::Timing;
-use crate::shaders::selftest::{Arguments, ArgumentsPush, Mark, MarkPush, Ramp, RampPush, Splat, SplatPush};
+use crate::shaders::selftest::{
+    Arguments, ArgumentsPush, Ground, GroundPush, Mark, MarkPush, Ramp, RampPush, Splat, SplatPush,
+};
 use crate::vulkan::{DepthState, RasterState, StencilState};
 
 const SIZE: [u32; 2] = [24, 17];
@@ -151,6 +153,34 @@ fn a_pass_without_attachments_covers_its_area() {
     let mut store = session.store();
     for area in [SIZE, [10, 6], [10, 7]] {
         expect(&hits_of_area(&mut store, area), |x, y| if inside(x, y, [0; 2], area) { 2 } else { 0 });
+    }
+}
+
+/// A ground on which one stands fills all below the horizon, which its corners lie next to: on one line, to the sub-pixels of a small picture.
+#[test]
+fn a_large_triangle_is_drawn_although_its_corners_lie_on_the_horizon() {
+    let session = Session::open();
+    let mut store = session.store();
+    for (reach, side) in [1e2, 1e4, 1e6].into_iter().flat_map(|reach| [(reach, 1.0), (reach, -1.0)]) {
+        let mut graph = Graph::new(&mut store);
+        let (_, hits) = canvas(&mut graph);
+        let ground = Ground { hits: hits.read_write(), push: GroundPush { reach, side, width: SIZE[0] } };
+        graph.raster("ground/draw", ground, state(None)).area(SIZE).vertices(3, 1);
+        let found = run(graph, hits);
+        let drawn = found.iter().filter(|&&count| count > 0).count();
+        println!("{reach} m, {side}: {drawn} pixels");
+        // The middle row shows the horizon itself.
+        let horizon = SIZE[1] / 2;
+        for (index, &count) in (0..).zip(&found).filter(|(index, _)| index / SIZE[0] != horizon) {
+            let expected = u32::from(index / SIZE[0] > horizon);
+            assert_eq!(
+                count,
+                expected,
+                "pixel {}, {} on {reach} m: {drawn} are drawn",
+                index % SIZE[0],
+                index / SIZE[0]
+            );
+        }
     }
 }
 

@@ -9,10 +9,14 @@ use crate::vulkan::DeviceTraits;
 fn frame(session: &Session, settings: &[(&str, &str)], scene: &str, slot: Slot) -> Frame {
     let mut of = Settings::new(Technique::Hybrid, Preset::Default);
     settings.iter().for_each(|(key, value)| of.set(key, value).expect("a setting"));
+    slots_of(session, &of, scene, &[slot])
+}
+
+fn slots_of(session: &Session, settings: &Settings, scene: &str, slots: &[Slot]) -> Frame {
     let scene = builtin(scene);
     let view = scene.camera_view(None).expect("a camera");
-    let request = FrameRequest { slots: vec![slot], timing: Timing::Passes, ..FrameRequest::new([48, 36], view) };
-    session.render(&scene, &of, &request)
+    let request = FrameRequest { slots: slots.to_vec(), timing: Timing::Passes, ..FrameRequest::new([48, 36], view) };
+    session.render(&scene, settings, &request)
 }
 
 /// Lanes that are not known to run in step share their work through the group's memory, or each do it alone.
@@ -43,5 +47,43 @@ fn pictures_do_not_depend_on_how_long_loops_may_be() {
         for (one, other) in one.iter().zip(other) {
             assert!((one - other).abs() <= 1e-5 * other.abs(), "{one} of several passes, {other} of one");
         }
+    }
+}
+
+/// Texels have the same bits wherever they are read from.
+#[test]
+fn lists_in_storage_buffers_change_no_bit() {
+    let settings = Settings::new(Technique::Hybrid, Preset::Default);
+    let in_storage = Session::with_traits(|known| DeviceTraits { texels_in_storage: true, ..known });
+    let [storage, usual] =
+        [&in_storage, &Session::open()].map(|session| slots_of(session, &settings, "ring", &Slot::ALL));
+    for (slot, image) in &storage.slots {
+        assert!(image == &usual.slots[slot], "{slot} differs");
+    }
+    assert!(storage.slots[&Slot::Caustics].pixels.iter().any(|pixel| pixel[0] > 0.0));
+}
+
+/// Depths by the triangles' planes are where a fine rasteriser has them, and light and shadow with them, but along edges.
+#[test]
+fn depths_of_planes_are_those_of_a_fine_rasteriser() {
+    let fine = Session::open();
+    if fine.context.shared_device().traits().plane_depths {
+        eprintln!("a coarse rasteriser: its depths are nothing to compare with");
+        return;
+    }
+    let by_planes = Session::with_traits(|known| DeviceTraits { plane_depths: true, ..known });
+    let settings = Settings::new(Technique::Direct, Preset::Default);
+    // The second has views from emitters, which stand elsewhere then.
+    for scene in ["cornell-point", "cornell-panel"] {
+        let [planes, rasterised] =
+            [&by_planes, &fine].map(|session| slots_of(session, &settings, scene, &[Slot::Direct]));
+        let ran = |frame: &Frame| frame.timings.passes.iter().filter(|pass| pass.pass.ends_with("plane-depth")).count();
+        assert_eq!((ran(&planes), ran(&rasterised)), (2, 0), "passes that draw depths by planes");
+        let [planes, rasterised] = [&planes, &rasterised].map(|frame| &frame.slots[&Slot::Direct].pixels);
+        let off =
+            |(a, b): &(&[f32; 3], &[f32; 3])| (0..3).any(|channel| (a[channel] - b[channel]).abs() > 1e-3 * b[channel]);
+        let differ = planes.iter().zip(rasterised).filter(off).count();
+        println!("{scene}: {differ} of {} pixels differ", planes.len());
+        assert!(differ * 100 <= planes.len(), "{scene}: {differ} of {} pixels differ", planes.len());
     }
 }

@@ -92,7 +92,7 @@ impl<'s> Graph<'s> {
 
     /// Whether depths are drawn anew by the triangles' planes, since the device rounds vertices coarsely.
     pub(crate) fn draws_plane_depths(&self) -> bool {
-        self.store.device().variants.plane_depths
+        self.traits().plane_depths
     }
 
     /// The longest side that an image of the device may have.

@@ -238,10 +238,9 @@ impl Renderer {
     /// Brings the scene and its lights up to date on the device. Returns what rays meet, if the frame's passes send any.
     pub(super) fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Option<Arc<TracedScene>>, Error> {
         let device = self.store.device().clone();
-        let limit = device.limits().max_image_dimension2_d;
         let data = SceneData::update(&device, self.store.pipelines(), self.data.take(), scene)?;
         let detail = self.settings.lights.detail(self.settings.shadow_map.filter_radius);
-        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, detail, limit);
+        self.lights = LightSet::update(std::mem::take(&mut self.lights), scene, &data, detail, &device);
         self.data = Some(data);
         let methods =
             |wants: &dyn Fn(Slot) -> bool| wanted_methods(&self.settings, &scene.facts(), &self.lights, wants);

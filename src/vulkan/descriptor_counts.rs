@@ -43,7 +43,7 @@ impl DescriptorCounts {
         self
     }
 
-    /// `texels_in_storage`: lists that shaders read as texels are storage buffers (variants.rs).
+    /// `texels_in_storage`: lists that shaders read as texels are storage buffers (traits.rs).
     pub(super) fn pool_sizes(&self, texels_in_storage: bool) -> Vec<vk::DescriptorPoolSize> {
         let size = |(kind, count): (&vk::DescriptorType, &u32)| {
             let moved = texels_in_storage && *kind == vk::DescriptorType::UNIFORM_TEXEL_BUFFER;

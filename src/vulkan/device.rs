@@ -19,7 +19,6 @@ use super::loader_lock;
 use super::program::BindingKind;
 use super::report::{self, DeviceReport, Survey};
 use super::traits::DeviceTraits;
-use super::variants::Variants;
 
 /// Which device, and how closely it is watched.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +39,6 @@ pub(crate) struct Device {
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
     pub(super) marking: Marking,
-    pub(crate) variants: Variants,
     allocator: ManuallyDrop<Mutex<Allocator>>,
     live: Mutex<BTreeMap<u64, (String, u64)>>,
     next_id: AtomicU64,
@@ -65,10 +63,9 @@ impl Device {
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
             .queue_priorities(&priorities)];
-        let variants = Variants::of(&survey.properties.limits);
         let core = vk::PhysicalDeviceFeatures {
             // A fetch beyond a texel buffer's end reads zeros, as a driver that has them does by itself.
-            robust_buffer_access: vk::Bool32::from(variants.texels_in_storage),
+            robust_buffer_access: vk::Bool32::from(survey.traits.texels_in_storage),
             fragment_stores_and_atomics: vk::TRUE,
             draw_indirect_first_instance: vk::TRUE,
             independent_blend: vk::TRUE,
@@ -143,7 +140,6 @@ impl Device {
             survey,
             labels,
             marking,
-            variants,
             allocator,
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
@@ -196,7 +192,7 @@ impl Device {
     /// What a binding of this kind is to the device.
     pub(crate) fn descriptor_type(&self, kind: BindingKind) -> vk::DescriptorType {
         match kind {
-            BindingKind::TexelBuffer if self.variants.texels_in_storage => vk::DescriptorType::STORAGE_BUFFER,
+            BindingKind::TexelBuffer if self.traits().texels_in_storage => vk::DescriptorType::STORAGE_BUFFER,
             kind => kind.descriptor_type(),
         }
     }

@@ -105,7 +105,7 @@ impl Buffer {
     ) -> Result<Buffer, VulkanError> {
         let size = size.max(16).next_multiple_of(4);
         let texels = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-        let in_storage = device.variants.texels_in_storage && usage.contains(texels);
+        let in_storage = device.traits().texels_in_storage && usage.contains(texels);
         let usage = if in_storage { usage & !texels | vk::BufferUsageFlags::STORAGE_BUFFER } else { usage };
         let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive.
@@ -153,7 +153,7 @@ impl Buffer {
     pub(crate) fn texels(&self, format: vk::Format) -> Result<Option<vk::BufferView>, VulkanError> {
         let device = &self.memory.device;
         let limit = u64::from(device.limits().max_storage_buffer_range);
-        if !device.variants.texels_in_storage {
+        if !device.traits().texels_in_storage {
             return self.texel_view(format).map(Some);
         }
         if self.size > limit {

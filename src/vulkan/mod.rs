@@ -27,7 +27,6 @@ mod report;
 mod storage_texels;
 mod traits;
 mod transfer;
-mod variants;
 
 pub use crash_markers::CrashMarkers;
 pub(crate) use descriptors::{Descriptor, MaterialSets};

@@ -157,7 +157,7 @@ impl Pipelines {
         raster: Option<(RasterState, TargetFormats)>,
         texels: TexelFormats,
     ) -> Result<Pipeline, VulkanError> {
-        let texels = if self.device.variants.texels_in_storage { texels } else { TexelFormats::new() };
+        let texels = if self.device.traits().texels_in_storage { texels } else { TexelFormats::new() };
         let key = Key { program: program.name, constants: constants.to_vec(), raster, texels };
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&key) {
@@ -246,7 +246,7 @@ impl Pipelines {
         let mut modules = Vec::new();
         let mut stages = Vec::new();
         for (stage, mut words) in program.stages.iter().zip(program.spirv()?) {
-            if self.device.variants.texels_in_storage {
+            if self.device.traits().texels_in_storage {
                 words = read_storage(&words, &key.texels)
                     .map_err(|error| VulkanError::Shader(format!("{}: {error}", program.name)))?;
             }

@@ -101,7 +101,7 @@ impl Recorder {
                 raw.destroy_descriptor_pool(self.descriptors, None);
                 self.descriptors = vk::DescriptorPool::null();
                 let capacity = std::mem::take(&mut self.capacity).grown_to(wanted);
-                let sizes = capacity.pool_sizes(self.device.variants.texels_in_storage);
+                let sizes = capacity.pool_sizes(self.device.traits().texels_in_storage);
                 let info = vk::DescriptorPoolCreateInfo::default().max_sets(capacity.sets()).pool_sizes(&sizes);
                 self.descriptors = raw.create_descriptor_pool(&info, None).called("vkCreateDescriptorPool")?;
                 self.capacity = capacity;

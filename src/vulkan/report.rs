@@ -70,7 +70,7 @@ impl Survey {
         let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         let family = families.iter().position(|family| family.queue_flags.contains(wanted));
         let limits = &properties.limits;
-        let traits = DeviceTraits::of(properties.device_type, vulkan12.driver_id, vulkan11.subgroup_size);
+        let traits = DeviceTraits::of(&properties, vulkan12.driver_id, vulkan11.subgroup_size);
         let features_of = |format: vk::Format| {
             // SAFETY: as above.
             let found = unsafe { raw.get_physical_device_format_properties(device, format) };

@@ -8,7 +8,6 @@ mod gltf_materials;
 mod gltf_meshes;
 mod gltf_scenes;
 mod house;
-mod least_limits;
 mod light_notation;
 #[cfg(debug_assertions)]
 mod live_shaders;
