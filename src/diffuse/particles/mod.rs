@@ -56,7 +56,7 @@ impl Method for Particles {
     fn declare(cx: &mut FrameCx<'_, '_>, options: &ParticlesOptions) -> Result<Option<ImageRef>, Error> {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
-        let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo));
+        let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo()));
         let space = ParticleSpace::declare(cx.graph, scene, options);
         let radiance = lighting::light(cx.graph, scene, &space, options, steps).radiance;
         Ok(Some(shading::shade(cx, &space, shift, options.gather * options.gather, radiance)))
