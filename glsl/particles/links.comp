@@ -12,6 +12,7 @@
 #include "particles/arrivals.glsl"
 #include "particles/home.glsl"
 #include "particles/link.glsl"
+#include "particles/places.glsl"
 #include "particles/specular.glsl"
 
 // One link of one particle: the particle that stands for what a ray meets, sent in one of n×n strata of the hemisphere by the cosine. Of each square
@@ -24,7 +25,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) writeonly buffer Links { uint links[]; };
 layout(set = 0, binding = 2) buffer ScatterLinks { uint scatter_links[]; };  // first ends; where something is specular, all second ends behind
 layout(set = 0, binding = 3) buffer Arrivals { uint arrivals[]; };
@@ -153,7 +153,7 @@ void main() {
     }
     uint particle = push.first + own;
     uvec4 place = texelFetch(particle_places, int(particle));
-    vec3 face = unpack_direction(texelFetch(particle_faces, int(particle)).x);
+    vec3 face = face_of_particle(particle_places, particle);
     uvec2 stratum = uvec2(link % push.gather_side, link / push.gather_side);
     uint random = seed_of(particle, link);
     vec2 jitter = vec2(random & 0xFFFFu, random >> 16) / 65536.0;

@@ -27,18 +27,19 @@ const float LIST_ACROSS = 0.5;
 const float OFF_PLANE = 0.05;
 
 void main() {
-    uint particle = gl_GlobalInvocationID.x;
-    if (particle >= push.particle_count) {
+    uint entry = gl_GlobalInvocationID.x;
+    if (entry >= push.particle_count) {
         return;
     }
     float spacing = spacing_of_particles();
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
-    uvec4 place = texelFetch(particle_places, int(particle));
+    uvec4 place = texelFetch(particle_entries, int(entry));
     vec3 position = uintBitsToFloat(place.xyz);
     vec3 normal = unpack_direction(place.w);
     float reach = LIST_SPACINGS * spacing;
     ivec3 low = cell_of(position - reach, spacing);
     ivec3 size = cell_of(position + reach, spacing) - low + 1;
+    uint particle = particle_of_entry(entry);
     uint first = particle * LIST_CAPACITY;
     uint found = 0u;
     [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {
@@ -46,7 +47,7 @@ void main() {
         int bucket = int(bucket_of(cell, bucket_count));
         uint end = texelFetch(particle_starts, bucket + 1).x;
         [[dont_unroll]] for (uint other = texelFetch(particle_starts, bucket).x; other < end; ++other) {
-            uvec4 other_place = texelFetch(particle_places, int(other));
+            uvec4 other_place = texelFetch(particle_entries, int(other));
             vec3 other_position = uintBitsToFloat(other_place.xyz);
             vec3 way = other_position - position;
             float above = dot(way, normal);
@@ -63,16 +64,15 @@ void main() {
         }
     }
     uint listed = min(found, LIST_CAPACITY);
-    uint kept = listed;
-    vec3 from = above_particle(place, spacing);
-    kept = 0u;
-    [[dont_unroll]] for (uint entry = 0u; entry < listed; ++entry) {
-        uint other = lists[first + entry];
-        vec3 way = position_of_particle(other) - position;
+    vec3 from = above_entry(place, spacing);
+    uint kept = 0u;
+    [[dont_unroll]] for (uint i = 0u; i < listed; ++i) {
+        uint other = lists[first + i];
+        vec3 way = position_of_entry(other) - position;
         // Off the tangent plane may be another layer of thin things.
         bool tested = is_crowded(place.w) || abs(dot(way, normal)) > OFF_PLANE * length(way);
-        if (!tested || other == particle || sees_particle(from, other, spacing)) {
-            lists[first + kept] = other;
+        if (!tested || other == entry || sees_entry(from, other, spacing)) {
+            lists[first + kept] = particle_of_entry(other);
             ++kept;
         }
     }

@@ -4,13 +4,13 @@
 use ash::vk;
 
 use super::options::ParticlesOptions;
+use super::place::Placed;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::groups::{Lobes, Particles, SceneRays};
 use crate::shaders::particles::{
-    AreaSums, AreaSumsPush, Areas, AreasPush, Catch, CatchPush, Crowd, CrowdPush, Fill, FillPush, Links, LinksPush,
-    List, ListPush, Matter, MatterPush, Place, PlacePush, Sort, SortPush, Starts, StartsPush,
+    Catch, CatchPush, Links, LinksPush, List, ListPush, Matter, MatterPush,
 };
 
 /// Points by which the area of a particle is measured, for each.
@@ -25,9 +25,8 @@ const SPACING: f64 = 0.0125;
 const FINEST: f64 = 0.0025;
 
 pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
-const WORDS2: vk::Format = vk::Format::R32G32_UINT;
-const WORDS4: vk::Format = vk::Format::R32G32B32A32_UINT;
-const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
+pub(super) const WORDS4: vk::Format = vk::Format::R32G32B32A32_UINT;
+pub(super) const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
 pub(super) const FLOATS4: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The links of the particles `first` to `first + count`, gather² of each.
@@ -42,8 +41,8 @@ pub(super) struct ParticleSpace {
     pub(super) count: u32,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
-    /// The packed normal of the triangle that each lies on.
-    pub(super) faces: BufferRef<u32>,
+    /// Where each is, and behind all these on which triangle.
+    pub(super) places: BufferRef<[u32; 4]>,
     /// Albedo and area of each.
     pub(super) matter: BufferRef<[f32; 4]>,
     pub(super) chunks: Vec<Chunk>,
@@ -71,95 +70,18 @@ pub(super) fn lobes_of(scene: &TracedScene) -> Lobes {
 impl ParticleSpace {
     /// Declares the stage.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
-        let rays = scene.rays(graph);
-        let (particle_count, triangle_count) = (count_of(scene, options), scene.triangle_count);
-        let threads = [particle_count, 1, 1];
-        let areas = graph.buffer::<f32>("particles.areas", triangle_count as usize);
-        let (middle, radius) = (scene.middle_rs.as_vec3().to_array(), scene.radius as f32);
-        let push = AreasPush { middle, radius, triangle_count };
-        let pass = Areas { scene_rays: rays.clone(), areas: areas.write(), push };
-        graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
-
-        let sums = graph.buffer::<f32>("particles.area_sums", triangle_count as usize + 1);
-        let spacing = graph.buffer::<f32>("particles.spacing", 1);
-        let pass = AreaSums {
-            areas: areas.texels(FLOAT),
-            sums: sums.write(),
-            spacing: spacing.write(),
-            push: AreaSumsPush { triangle_count, particle_count },
-        };
-        graph.pass("diffuse/particles/place/sums", pass).groups([1, 1, 1]);
-
-        let bucket_count = (particle_count / 2).next_power_of_two();
-        let counts = graph.buffer::<u32>("particles.bucket_counts", bucket_count as usize);
-        graph.fill_buffer("diffuse/particles/place/clear", counts, 0);
-        let unsorted = graph.buffer::<[u32; 4]>("particles.unsorted", particle_count as usize);
-        let unsorted_faces = graph.buffer::<[u32; 2]>("particles.unsorted_faces", particle_count as usize);
-        let pass = Place {
-            scene_rays: rays.clone(),
-            sums: sums.texels(FLOAT),
-            spacing: spacing.texels(FLOAT),
-            places: unsorted.write(),
-            faces: unsorted_faces.write(),
-            counts: counts.read_write(),
-            push: PlacePush { triangle_count, particle_count, bucket_count },
-        };
-        graph
-            .pass("diffuse/particles/place/points", pass)
-            .note("particles", u64::from(particle_count))
-            .threads(threads);
-
-        let starts = graph.buffer::<u32>("particles.bucket_starts", bucket_count as usize + 1);
-        let push = StartsPush { count: bucket_count };
-        let pass = Starts { counts: counts.texels(WORD), starts: starts.write(), push };
-        graph.pass("diffuse/particles/place/starts", pass).groups([1, 1, 1]);
-        let order = graph.buffer::<u32>("particles.order", particle_count as usize);
-        let pass = Fill {
-            faces: unsorted_faces.texels(WORDS2),
-            starts: starts.texels(WORD),
-            counts: counts.read_write(),
-            order: order.write(),
-            push: FillPush { particle_count },
-        };
-        graph.pass("diffuse/particles/place/fill", pass).threads(threads);
-        let sorted = graph.buffer::<[u32; 4]>("particles.sorted", particle_count as usize);
-        let faces = graph.buffer::<u32>("particles.faces", particle_count as usize);
-        let pass = Sort {
-            order: order.texels(WORD),
-            starts: starts.texels(WORD),
-            places: unsorted.texels(WORDS4),
-            faces: unsorted_faces.texels(WORDS2),
-            sorted_places: sorted.write(),
-            sorted_faces: faces.write(),
-            push: SortPush { particle_count },
-        };
-        graph.pass("diffuse/particles/place/sort", pass).threads(threads);
-        let places = graph.buffer::<[u32; 4]>("particles.places", particle_count as usize);
-        let pass = Crowd {
-            scene_rays: rays.clone(),
-            faces: faces.texels(WORD),
-            sorted_places: sorted.texels(WORDS4),
-            starts: starts.texels(WORD),
-            spacing_of_all: spacing.texels(FLOAT),
-            places: places.write(),
-            push: CrowdPush { particle_count },
-        };
-        graph.pass("diffuse/particles/place/crowd", pass).threads(threads);
-        let group = Particles {
-            particle_places: places.texels(WORDS4),
-            particle_starts: starts.texels(WORD),
-            particle_spacing: spacing.uniform(),
-        };
+        let particle_count = count_of(scene, options);
+        let Placed { rays, triangle_count, sums, group, places } = Placed::declare(graph, scene, particle_count);
         let lost = graph.buffer::<u32>("particles.lost", 2);
         graph.fill_buffer("diffuse/particles/place/clear-lost", lost, 0);
         let lobes = lobes_of(scene);
-        let space = Unlinked { lobes, particle_count, triangle_count, rays, group, faces, lost };
+        let space = Unlinked { lobes, particle_count, triangle_count, rays, group, lost };
         let matter = space.measure(graph, sums);
         let (chunks, scatter_links, arrivals) = space.link(graph, scene, options);
         let (lists, list_lengths) = space.list(graph);
         let Unlinked { rays, group, .. } = space;
         let count = particle_count;
-        ParticleSpace { count, rays, group, faces, matter, chunks, scatter_links, arrivals, lists, list_lengths }
+        ParticleSpace { count, rays, group, places, matter, chunks, scatter_links, arrivals, lists, list_lengths }
     }
 }
 
@@ -169,7 +91,6 @@ struct Unlinked {
     triangle_count: u32,
     rays: SceneRays,
     group: Particles,
-    faces: BufferRef<u32>,
     lobes: Lobes,
     /// Points and link ends that no particle stands for.
     lost: BufferRef<u32>,
@@ -233,7 +154,6 @@ impl Unlinked {
                     scene_rays: self.rays.clone(),
                     scene_lights: scene.lights(graph),
                     particles: self.group.clone(),
-                    particle_faces: self.faces.texels(WORD),
                     links: links.write(),
                     scatter_links: if number == 0 {
                         scatter_links.start_then_read()

@@ -9,6 +9,7 @@
 mod geometry;
 mod lighting;
 pub(crate) mod options;
+mod place;
 mod shading;
 #[cfg(test)]
 mod tests;
