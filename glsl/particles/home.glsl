@@ -47,6 +47,8 @@ Neighbour nearest_entry(vec3 position, vec3 normal, float spacing, float after, 
     bvec3 upwards = greaterThan(within, vec3(0.5 * CELL_SPACINGS * spacing));
     vec3 away = mix(within, CELL_SPACINGS * spacing - within, upwards);
     ivec3 towards = mix(ivec3(-1), ivec3(1), upwards);
+    // Other cells share the buckets.
+    float reach2 = pow(2.0 * CELL_SPACINGS * spacing, 2.0) * 3.0;
     Neighbour nearest = Neighbour(NO_ENTRY, 3e38, false);
     int count = wide ? 27 : 8;
     [[dont_unroll]] for (int number = 0; number < count; ++number) {
@@ -62,7 +64,7 @@ Neighbour nearest_entry(vec3 position, vec3 normal, float spacing, float after, 
             vec3 way = uintBitsToFloat(record.xyz) - position;
             float above = dot(way, normal);
             float key = dot(way, way) + ACROSS * above * above;
-            if (key < nearest.key && key > after && dot(unpack_direction(record.w), normal) > similar) {
+            if (key < nearest.key && key > after && dot(way, way) <= reach2 && dot(unpack_direction(record.w), normal) > similar) {
                 nearest = Neighbour(entry, key, is_crowded(record.w));
             }
         }

@@ -6,6 +6,7 @@
 #include "lib/bvh.glsl"
 #include "particles/home.glsl"
 #include "particles/lists.glsl"
+#include "particles/moved.glsl"
 
 // Lists the particles whose irradiance counts at points of one particle's catchment (the estimation lists of Chang et al. 3.2, at area particles): those
 // within reach, of similar normals, near the tangent plane, and seen by it where anything stands near. Always in the same order.
@@ -13,10 +14,14 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) buffer Lists { uint lists[]; };
-layout(set = 0, binding = 1) writeonly buffer Lengths { uint lengths[]; };
+layout(set = 0, binding = 1) buffer Lengths { uint lengths[]; };
 layout(set = 0, binding = 2) buffer Counts { uint counts[]; };  // entries, entries for which there was no room
+layout(set = 0, binding = 3) uniform usamplerBuffer touched;
 
-layout(push_constant, scalar) uniform Push { uint particle_count; } push;
+layout(push_constant, scalar) uniform Push {
+    uint particle_count;
+    uint again;           // 1: those alone that something moved near
+} push;
 
 // Spacings: the kernel's radius and how far a point may be from its particle.
 const float LIST_SPACINGS = KERNEL_SPACINGS + 1.0;
@@ -31,6 +36,10 @@ void main() {
     if (entry >= push.particle_count) {
         return;
     }
+    uint particle = particle_of_entry(entry);
+    if (push.again != 0u && (touched_bits(touched, particle) & LIST_TOUCHED) == 0u) {
+        return;
+    }
     float spacing = spacing_of_particles();
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
     uvec4 place = texelFetch(particle_entries, int(entry));
@@ -39,7 +48,6 @@ void main() {
     float reach = LIST_SPACINGS * spacing;
     ivec3 low = cell_of(position - reach, spacing);
     ivec3 size = cell_of(position + reach, spacing) - low + 1;
-    uint particle = particle_of_entry(entry);
     uint first = particle * LIST_CAPACITY;
     uint found = 0u;
     [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {

@@ -7,7 +7,14 @@
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
 
 mod geometry;
+mod kept;
 mod lighting;
+mod links;
+mod lists;
+mod measure;
+mod moved;
+#[cfg(test)]
+mod moving_tests;
 pub(crate) mod options;
 mod place;
 mod shading;
@@ -43,7 +50,7 @@ impl Method for Particles {
     }
 
     fn shaders(_: &ParticlesOptions, _: bool) -> Vec<&'static str> {
-        vec!["particles/*"]
+        vec!["particles/*", "buckets/*"]
     }
 
     fn skip(_: &ParticlesOptions, facts: &Facts) -> Option<&'static str> {

@@ -5,10 +5,10 @@ use super::geometry::{FLOAT, WORD, WORDS4};
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
+use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::groups::{Particles, SceneRays};
 use crate::shaders::particles::{
     AreaSums, AreaSumsPush, Areas, AreasPush, Crowd, CrowdPush, Fill, FillPush, Place, PlacePush, Sort, SortPush,
-    Starts, StartsPush,
 };
 
 /// Particles at their places.
@@ -18,8 +18,6 @@ pub(super) struct Placed {
     /// Diffuse area before each triangle, and the total.
     pub(super) sums: BufferRef<f32>,
     pub(super) group: Particles,
-    /// Two texels of each (glsl/particles/places.glsl).
-    pub(super) places: BufferRef<[u32; 4]>,
 }
 
 impl Placed {
@@ -29,9 +27,8 @@ impl Placed {
         let triangle_count = scene.triangle_count;
         let threads = [particle_count, 1, 1];
         let areas = graph.buffer::<f32>("particles.areas", triangle_count as usize);
-        let (middle, radius) = (scene.middle_rs.as_vec3().to_array(), scene.radius as f32);
-        let push = AreasPush { middle, radius, triangle_count };
-        let pass = Areas { scene_rays: rays.clone(), areas: areas.write(), push };
+        let push = AreasPush { triangle_count };
+        let pass = Areas { scene_rays: rays.clone(), own_areas: scene.own_areas(graph), areas: areas.write(), push };
         graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
 
         let sums = graph.buffer::<f32>("particles.area_sums", triangle_count as usize + 1);
@@ -62,7 +59,7 @@ impl Placed {
         pass.note("particles", u64::from(particle_count)).threads(threads);
 
         let starts = graph.buffer::<u32>("particles.bucket_starts", bucket_count as usize + 1);
-        let push = StartsPush { count: bucket_count };
+        let push = StartsPush { bucket_count };
         let pass = Starts { counts: counts.texels(WORD), starts: starts.write(), push };
         graph.pass("diffuse/particles/place/starts", pass).groups([1, 1, 1]);
         let order = graph.buffer::<u32>("particles.order", particle_count as usize);
@@ -104,6 +101,6 @@ impl Placed {
             particle_spacing: spacing.uniform(),
             particle_entries: entries.texels(WORDS4),
         };
-        Placed { rays, triangle_count, sums, group, places }
+        Placed { rays, triangle_count, sums, group }
     }
 }

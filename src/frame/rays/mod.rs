@@ -5,6 +5,7 @@ mod emissive_cells;
 mod emitters;
 mod hierarchy;
 mod looks;
+mod motion;
 mod sobol;
 mod surfaces;
 mod targets;
@@ -15,6 +16,7 @@ mod traced_scene;
 mod triangles;
 mod uploaded;
 
+pub(crate) use self::motion::Motion;
 pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;
 pub(crate) use self::traced_scene::{TracedScene, traced_key};

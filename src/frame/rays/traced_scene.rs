@@ -9,6 +9,7 @@ use super::surfaces::{Surfaces, surfaces_key};
 use super::targets::{Reach, TargetShares, targets};
 use super::uploaded::{FLOAT, Uploaded, WORDS};
 use crate::frame::light_set::{punctual_light, shining_lights};
+use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
 use crate::scene::{Alpha, Facts, Material, Scene};
 use crate::shaders::groups::{LightTargets, SceneLights, SceneRays};
@@ -51,6 +52,8 @@ pub(crate) struct TracedScene {
     pub(super) lights: Uploaded,
     targets: Uploaded,
     target_densities: Uploaded,
+    /// Of the densities that points of emissive surfaces are drawn with.
+    densities_key: u64,
 }
 
 impl std::ops::Deref for TracedScene {
@@ -86,7 +89,11 @@ impl TracedScene {
         };
         let surfaces = match held.filter(|held| held.surfaces.key == surfaces_key(scene)) {
             Some(held) => held.surfaces.clone(),
-            None => Arc::new(Surfaces::new(device, scene, &looks, &facts)?),
+            None => {
+                // Other materials make other particles.
+                let before = held.filter(|held| Arc::ptr_eq(&held.looks, &looks)).map(|held| &*held.surfaces);
+                Arc::new(Surfaces::new(device, scene, &looks, &facts, before)?)
+            }
         };
         let (triangles, origin, radius) = (&surfaces.triangles, surfaces.origin, surfaces.radius);
         let shining = shining_lights(scene);
@@ -129,6 +136,7 @@ impl TracedScene {
             },
             targets: upload("traced.targets", &found.records)?,
             target_densities: Uploaded::new(device, "traced.target_densities", densities, FLOAT, name(densities))?,
+            densities_key: hash_of(&bytemuck::cast_slice::<f32, u32>(&table.light_densities)),
             surfaces,
             looks,
         })
@@ -187,6 +195,17 @@ impl TracedScene {
             emissive_cells: u32::from(self.emissive_cells),
             wide: u32::from(surfaces.wide),
         }
+    }
+
+    /// The area of each triangle that matters, as it stands wherever the triangle moves.
+    pub(crate) fn own_areas(&self, graph: &mut Graph<'_>) -> TexelBuffer {
+        self.surfaces.own_areas.texels(graph, Dependence::GEOMETRY)
+    }
+
+    /// Names what emissive surfaces send out, wherever they stand.
+    pub(crate) fn emission_key(&self) -> u64 {
+        let scales = [self.emissive_density_scale, self.greatest_radiance].map(f32::to_bits);
+        hash_of(&(self.looks.key, self.emissive.key, self.densities_key, scales))
     }
 
     /// Where light paths are sent.
