@@ -8,17 +8,19 @@
 #include "lib/vectors.glsl"
 #include "particles/grid.glsl"
 #include "particles/headroom.glsl"
+#include "particles/places.glsl"
 
 // Notes of one particle whether something stands near it, and how much is free above it (headroom.glsl): another one above its tangent plane, or the
 // underside of something, however low. Where neither is, nothing that is as large as the particles' spacing stands between it and the points that it stands for.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer sorted_places;
+layout(set = 0, binding = 0) uniform usamplerBuffer sorted;
 layout(set = 0, binding = 1) uniform usamplerBuffer starts;
 layout(set = 0, binding = 2) uniform samplerBuffer spacing_of_all;
-layout(set = 0, binding = 3) uniform usamplerBuffer faces;
-layout(set = 0, binding = 4) writeonly buffer Places { uvec4 places[]; };
+layout(set = 0, binding = 3) uniform usamplerBuffer numbers;
+layout(set = 0, binding = 4) uniform usamplerBuffer places;
+layout(set = 0, binding = 5) writeonly buffer Entries { uvec4 entries[]; };
 
 layout(push_constant, scalar) uniform Push { uint particle_count; } push;
 
@@ -30,13 +32,13 @@ const float BARELY_ABOVE = 0.002;
 const float OTHER_WAY = 0.5;  // cosine
 
 void main() {
-    uint particle = gl_GlobalInvocationID.x;
-    if (particle >= push.particle_count) {
+    uint entry = gl_GlobalInvocationID.x;
+    if (entry >= push.particle_count) {
         return;
     }
     float spacing = texelFetch(spacing_of_all, 0).x;
     uint bucket_count = uint(textureSize(starts)) - 1u;
-    uvec4 place = texelFetch(sorted_places, int(particle));
+    uvec4 place = texelFetch(sorted, int(entry));
     vec3 position = uintBitsToFloat(place.xyz);
     vec3 normal = unpack_direction(place.w);
     float reach = REACH_SPACINGS * spacing;
@@ -48,7 +50,7 @@ void main() {
         int bucket = int(bucket_of(cell, bucket_count));
         uint end = texelFetch(starts, bucket + 1).x;
         [[dont_unroll]] for (uint other = texelFetch(starts, bucket).x; other < end; ++other) {
-            uvec4 other_place = texelFetch(sorted_places, int(other));
+            uvec4 other_place = texelFetch(sorted, int(other));
             vec3 way = uintBitsToFloat(other_place.xyz) - position;
             float above = dot(way, normal);
             bool stands = above > ABOVE * spacing
@@ -56,7 +58,8 @@ void main() {
             crowded = crowded || (stands && dot(way, way) < reach * reach);
         }
     }
-    vec3 face = unpack_direction(texelFetch(faces, int(particle)).x);
+    uint particle = texelFetch(numbers, int(entry)).x;
+    vec3 face = face_of_particle(places, particle);
     Hit above = closest_hit(offset_ray_origin(position, face), normal, 2.0 * LIFT * spacing);
     float halvings = 0.0;
     if (above.triangle != NO_TRIANGLE) {
@@ -64,5 +67,6 @@ void main() {
         halvings = ceil(log2(max(2.0 * LIFT * spacing / max(above.distance, 1e-30), 1.0)));
     }
     uint level = crowded ? min(1u + uint(min(halvings, 100.0)), LEVELS) : 0u;
-    places[particle] = uvec4(place.xyz, with_headroom(place.w, level));
+    entries[entry] = uvec4(place.xyz, with_headroom(place.w, level));
+    entries[push.particle_count + entry] = uvec4(particle, 0u, 0u, 0u);
 }

@@ -12,6 +12,7 @@
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
 #include "particles/arrivals.glsl"
+#include "particles/places.glsl"
 
 // The flux that one particle receives from the lights, W (Chang et al. 4.2.1, for every kind of light):
 //
@@ -28,7 +29,6 @@ layout(local_size_x = 64) in;
 // 1: photons bring flux off mirrors and through glass.
 layout(constant_id = 0) const uint HAS_GLINTS = 0u;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
 layout(set = 0, binding = 1) uniform samplerBuffer matter;
 layout(set = 0, binding = 2) uniform usamplerBuffer arrivals;
 layout(set = 0, binding = 3) readonly buffer Glints { uint glints[]; };  // steps: red, green, blue one by one
@@ -75,7 +75,7 @@ void main() {
     uvec4 place = texelFetch(particle_places, int(particle));
     vec3 position = uintBitsToFloat(place.xyz);
     vec3 normal = unpack_direction(place.w);
-    vec3 face = unpack_direction(texelFetch(particle_faces, int(particle)).x);
+    vec3 face = face_of_particle(particle_places, particle);
     vec3 origin = offset_ray_origin(position, face);
     float disc = area * INVERSE_PI;
 

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer faces;
+layout(set = 0, binding = 0) uniform usamplerBuffer buckets;
 layout(set = 0, binding = 1) uniform usamplerBuffer starts;
 layout(set = 0, binding = 2) buffer Counts { uint counts[]; };
 layout(set = 0, binding = 3) writeonly buffer Order { uint order[]; };
@@ -17,7 +17,7 @@ void main() {
     if (particle >= push.particle_count) {
         return;
     }
-    uint bucket = texelFetch(faces, int(particle)).y;
+    uint bucket = texelFetch(buckets, int(particle)).x;
     uint place = atomicAdd(counts[bucket], 0xFFFFFFFFu) - 1u;
     order[texelFetch(starts, int(bucket)).x + place] = particle;
 }

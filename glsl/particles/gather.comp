@@ -30,7 +30,7 @@ void main() {
     [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
         uint end = texelFetch(links, int(own * push.link_count + i)).x;
         if (ends_on_particle(end)) {
-            sum += texelFetch(radiance, int(end)).rgb;
+            sum += texelFetch(radiance, int(particle_of_link(end))).rgb;
         }
     }
     irradiance[push.first + own] = vec4(sum * (PI / float(push.link_count)), texelFetch(matter, int(push.first + own)).w);

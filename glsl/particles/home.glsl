@@ -18,8 +18,10 @@ const float NOT_OPPOSITE = -0.5;
 const float ACROSS = 8.0;
 const int ATTEMPTS = 12;
 
+const uint NO_ENTRY = 0xFFFFFFFFu;
+
 struct Neighbour {
-    uint particle;
+    uint entry;
     float key;     // m²
     bool crowded;
 };
@@ -28,12 +30,16 @@ float spacing_of_particles() {
     return particle_spacing;
 }
 
-vec3 position_of_particle(uint particle) {
-    return uintBitsToFloat(texelFetch(particle_places, int(particle)).xyz);
+vec3 position_of_entry(uint entry) {
+    return uintBitsToFloat(texelFetch(particle_entries, int(entry)).xyz);
+}
+
+uint particle_of_entry(uint entry) {
+    return texelFetch(particle_entries, textureSize(particle_entries) / 2 + int(entry)).x;
 }
 
 // The nearest one beyond `after` in the eight cells around the point, or, if `wide`, in 27. Of the eight those are left out that are farther than what was found.
-Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float after, float similar, bool wide) {
+Neighbour nearest_entry(vec3 position, vec3 normal, float spacing, float after, float similar, bool wide) {
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
     ivec3 own = cell_of(position, spacing);
     // Towards which neighbours, and how far it is to them.
@@ -41,7 +47,9 @@ Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float afte
     bvec3 upwards = greaterThan(within, vec3(0.5 * CELL_SPACINGS * spacing));
     vec3 away = mix(within, CELL_SPACINGS * spacing - within, upwards);
     ivec3 towards = mix(ivec3(-1), ivec3(1), upwards);
-    Neighbour nearest = Neighbour(NO_PARTICLE, 3e38, false);
+    // Other cells share the buckets.
+    float reach2 = pow(2.0 * CELL_SPACINGS * spacing, 2.0) * 3.0;
+    Neighbour nearest = Neighbour(NO_ENTRY, 3e38, false);
     int count = wide ? 27 : 8;
     [[dont_unroll]] for (int number = 0; number < count; ++number) {
         ivec3 place = wide ? ivec3(number % 3, number / 3 % 3, number / 9) - 1 : ivec3(number & 1, number >> 1 & 1, number >> 2) * towards;
@@ -51,13 +59,13 @@ Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float afte
         }
         int bucket = int(bucket_of(own + place, bucket_count));
         uint end = texelFetch(particle_starts, bucket + 1).x;
-        [[dont_unroll]] for (uint particle = texelFetch(particle_starts, bucket).x; particle < end; ++particle) {
-            uvec4 record = texelFetch(particle_places, int(particle));
+        [[dont_unroll]] for (uint entry = texelFetch(particle_starts, bucket).x; entry < end; ++entry) {
+            uvec4 record = texelFetch(particle_entries, int(entry));
             vec3 way = uintBitsToFloat(record.xyz) - position;
             float above = dot(way, normal);
             float key = dot(way, way) + ACROSS * above * above;
-            if (key < nearest.key && key > after && dot(unpack_direction(record.w), normal) > similar) {
-                nearest = Neighbour(particle, key, is_crowded(record.w));
+            if (key < nearest.key && key > after && dot(way, way) <= reach2 && dot(unpack_direction(record.w), normal) > similar) {
+                nearest = Neighbour(entry, key, is_crowded(record.w));
             }
         }
     }
@@ -65,13 +73,13 @@ Neighbour nearest_particle(vec3 position, vec3 normal, float spacing, float afte
 }
 
 // Where segments to a particle end.
-vec3 above_particle(uvec4 place, float spacing) {
-    return uintBitsToFloat(place.xyz) + unpack_direction(place.w) * lift_of(place.w, spacing);
+vec3 above_entry(uvec4 record, float spacing) {
+    return uintBitsToFloat(record.xyz) + unpack_direction(record.w) * lift_of(record.w, spacing);
 }
 
 // Whether nothing stands between a place above a surface and a particle.
-bool sees_particle(vec3 from, uint particle, float spacing) {
-    vec3 way = above_particle(texelFetch(particle_places, int(particle)), spacing) - from;
+bool sees_entry(vec3 from, uint entry, float spacing) {
+    vec3 way = above_entry(texelFetch(particle_entries, int(entry)), spacing) - from;
     return dot(way, way) <= 1e-12 * spacing * spacing || !is_occluded(from, way, 1.0);
 }
 
@@ -86,23 +94,23 @@ uint home_among(vec3 position, vec3 normal, vec3 from, float least_similar, bool
     float spacing = spacing_of_particles();
     float after = -1.0;
     bool wide = false;
-    uint nearest = NO_PARTICLE;
+    uint nearest = NO_ENTRY;
     [[dont_unroll]] for (int attempt = 0; attempt < 2 * ATTEMPTS; ++attempt) {
-        Neighbour found = nearest_particle(position, normal, spacing, after, wide ? least_similar : SIMILAR, wide);
-        bool none = found.particle == NO_PARTICLE;
-        if (!none && ((!wide && !found.crowded) || sees_particle(from, found.particle, spacing))) {
-            return found.particle;
+        Neighbour found = nearest_entry(position, normal, spacing, after, wide ? least_similar : SIMILAR, wide);
+        bool none = found.entry == NO_ENTRY;
+        if (!none && ((!wide && !found.crowded) || sees_entry(from, found.entry, spacing))) {
+            return particle_of_entry(found.entry);
         }
-        nearest = nearest == NO_PARTICLE && any ? found.particle : nearest;
+        nearest = nearest == NO_ENTRY && any ? found.entry : nearest;
         after = found.key;
         if (!wide && (none || attempt == ATTEMPTS - 1)) {
             wide = true;
             after = -1.0;
         } else if (none) {
-            return nearest;
+            break;
         }
     }
-    return nearest;
+    return nearest == NO_ENTRY ? NO_PARTICLE : particle_of_entry(nearest);
 }
 
 // `from`: as lifted() gives it.

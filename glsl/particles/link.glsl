@@ -4,10 +4,22 @@
 
 #include "lib/vectors.glsl"
 
-const uint DARK_LINK = 0xFFFFFFFFu;  // in the sky, or where nothing is scattered diffusely
+const uint ESCAPED_LINK = 0xFFFFFFFFu;  // in the sky
+const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
+
+// Set where the link also brings light (arrivals.glsl).
+const uint BRINGS_LIGHT = 0x80000000u;
 
 bool ends_on_particle(uint link) {
     return link < DARK_LINK;
+}
+
+uint particle_of_link(uint link) {
+    return link & ~BRINGS_LIGHT;
+}
+
+uint bringing_light(uint link, bool brings) {
+    return brings && ends_on_particle(link) ? link | BRINGS_LIGHT : link;
 }
 
 // Around z with density cosθ/π, by the concentric map (Shirley & Chiu 1997): squares of strata stay compact.

@@ -9,9 +9,11 @@
 #include "lib/microfacet.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
+#include "particles/again.glsl"
 #include "particles/arrivals.glsl"
 #include "particles/home.glsl"
-#include "particles/link.glsl"
+#include "particles/link_direction.glsl"
+#include "particles/places.glsl"
 #include "particles/specular.glsl"
 
 // One link of one particle: the particle that stands for what a ray meets, sent in one of n×n strata of the hemisphere by the cosine. Of each square
@@ -22,13 +24,17 @@
 // Links that escape or end on an emitter also bring its light to the particle's flux (arrivals.glsl); that of emitters is weighted against the points that
 // emit.comp draws, by the balance heuristic (Veach & Guibas 1995): next to a lamp links find it, far from it points do.
 
+//
+// Where something moved, the links that this may concern (touched_links.comp) are traced again.
+
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer particle_faces;
-layout(set = 0, binding = 1) writeonly buffer Links { uint links[]; };
+layout(set = 0, binding = 1) buffer Links { uint links[]; };
 layout(set = 0, binding = 2) buffer ScatterLinks { uint scatter_links[]; };  // first ends; where something is specular, all second ends behind
 layout(set = 0, binding = 3) buffer Arrivals { uint arrivals[]; };
 layout(set = 0, binding = 4) buffer Lost { uint lost[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer head;
+layout(set = 0, binding = 6) uniform usamplerBuffer again;
 
 layout(push_constant, scalar) uniform Push {
     uint first;         // particle of the chunk
@@ -40,6 +46,7 @@ layout(push_constant, scalar) uniform Push {
     float density_scale;      // from a point's density among all lights to that among emissive triangles
     float emitter_samples;    // points of emissive surfaces that emit.comp draws for each particle
     float greatest_radiance;  // of any emissive surface, W/(m²·sr)
+    uint again;               // 1: those links alone that are listed
 } push;
 
 // What stands for the surface that the ray meets first, for the first diffuse one on its way, and for one that its reflection off that one meets.
@@ -57,12 +64,12 @@ void add_sky(uint particle, vec3 share) {
     atomicAdd(arrivals[first + 2u], steps.b);
 }
 
-// What the link brings of the light of the surface that it meets. `density`: of the link's direction times their number, 1/sr.
-void add_emission(uint particle, Triangle triangle, Material material, Hit hit, vec3 direction, float density) {
+// What the link brings of the light of the surface that it meets, if it does. `density`: of the link's direction times their number, 1/sr.
+bool add_emission(uint particle, Triangle triangle, Material material, Hit hit, vec3 direction, float density) {
     float cosine = -dot(front_normal(triangle), direction);
     cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : cosine;
     if (triangle.light_density <= 0.0 || cosine <= 0.0) {
-        return;
+        return false;
     }
     float points = emissive_density(triangle, hit.barycentric) * push.density_scale * push.emitter_samples * hit.distance * hit.distance / max(cosine, 1e-9);
     vec3 radiance = emissive_radiance(triangle, material, hit.barycentric) / push.greatest_radiance;
@@ -72,6 +79,7 @@ void add_emission(uint particle, Triangle triangle, Material material, Hit hit, 
         atomicAdd(arrivals[first + 2u * channel], uint(share[channel]));
         atomicAdd(arrivals[first + 2u * channel + 1u], uint(fract(share[channel]) * EMISSION_STEPS));
     }
+    return true;
 }
 
 float uniform_of(uint seed) {
@@ -86,10 +94,12 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
     }
     vec3 origin = offset_ray_origin(position, face);
     vec3 carried = vec3(1.0);
+    bool brings = false;
     [[dont_unroll]] for (uint event = 0u; event <= MOST_SPECULAR; ++event) {
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
             add_sky(particle, carried);
+            ends.gathered = event == 0u ? ESCAPED_LINK : bringing_light(ends.gathered, true);
             return ends;
         }
         Triangle triangle = load_triangle(triangles, hit.triangle);
@@ -98,7 +108,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
         vec3 met = point_of_hit(triangle, hit.barycentric, front, origin, hit.distance * direction);
         if (HAS_EMITTERS != 0u && event == 0u) {
             float density = float(push.gather_side * push.gather_side) * max(dot(normal, direction), 0.0) * INVERSE_PI;
-            add_emission(particle, triangle, material, hit, direction, density);
+            brings = add_emission(particle, triangle, material, hit, direction, density);
         }
         if (has_diffuse_lobe(material)) {
             // Behind mirrors the link stands for what they let through, or for nothing.
@@ -116,7 +126,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
             } else {
                 ends.second = home;
             }
-            ends.gathered = event == 0u ? home : ends.gathered;
+            ends.gathered = event == 0u ? bringing_light(home, brings) : ends.gathered;
             if (event > 0u) {
                 return ends;
             }
@@ -145,31 +155,29 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
 }
 
 void main() {
-    uint link = gl_GlobalInvocationID.x;
     uint link_count = push.gather_side * push.gather_side;
+    uint link = gl_GlobalInvocationID.x;
     uint own = gl_GlobalInvocationID.y;
+    if (push.again != 0u) {
+        uint number = number_again(head, again, push.count * link_count);
+        link = number % link_count;
+        own = number / link_count;
+    }
     if (link >= link_count || own >= push.count) {
         return;
     }
     uint particle = push.first + own;
     uvec4 place = texelFetch(particle_places, int(particle));
-    vec3 face = unpack_direction(texelFetch(particle_faces, int(particle)).x);
-    uvec2 stratum = uvec2(link % push.gather_side, link / push.gather_side);
-    uint random = seed_of(particle, link);
-    vec2 jitter = vec2(random & 0xFFFFu, random >> 16) / 65536.0;
-    vec2 square = (vec2(stratum) + jitter) / float(push.gather_side);
+    vec3 face = face_of_particle(particle_places, particle);
     vec3 normal = unpack_direction(place.w);
-    vec3 direction = to_world(frame_around(normal), cosine_direction(square));
-    uint block = push.gather_side / push.scatter_side;
-    uvec2 scatter = stratum / block;
-    uint chosen = seed_of(seed_of(particle, 0x5CA77E12u), scatter.y * push.scatter_side + scatter.x) % (block * block);
-    uvec2 within = stratum - scatter * block;
-    bool scatters = max(scatter.x, scatter.y) < push.scatter_side && within.y * block + within.x == chosen;
+    vec3 direction = link_direction(particle, link, push.gather_side, normal);
+    uint scatter = scatter_link_of(particle, link, push.gather_side, push.scatter_side);
+    bool scatters = scatter != NO_SCATTER_LINK;
     bool follows = scatters || push.sky_shines != 0u;
-    Ends ends = trace_link(particle, uintBitsToFloat(place.xyz), normal, face, direction, random, follows);
+    Ends ends = trace_link(particle, uintBitsToFloat(place.xyz), normal, face, direction, seed_of(particle, link), follows);
     links[own * link_count + link] = ends.gathered;
     if (scatters) {
-        uint scatter_link = (particle * push.scatter_side + scatter.y) * push.scatter_side + scatter.x;
+        uint scatter_link = particle * push.scatter_side * push.scatter_side + scatter;
         scatter_links[scatter_link] = ends.first;
         if (SPECULAR_LOBES != 0u) {
             scatter_links[push.second_ends + scatter_link] = ends.second;

@@ -6,6 +6,7 @@
 #include "lib/bvh.glsl"
 #include "particles/home.glsl"
 #include "particles/lists.glsl"
+#include "particles/moved.glsl"
 
 // Lists the particles whose irradiance counts at points of one particle's catchment (the estimation lists of Chang et al. 3.2, at area particles): those
 // within reach, of similar normals, near the tangent plane, and seen by it where anything stands near. Always in the same order.
@@ -13,10 +14,14 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) buffer Lists { uint lists[]; };
-layout(set = 0, binding = 1) writeonly buffer Lengths { uint lengths[]; };
+layout(set = 0, binding = 1) buffer Lengths { uint lengths[]; };
 layout(set = 0, binding = 2) buffer Counts { uint counts[]; };  // entries, entries for which there was no room
+layout(set = 0, binding = 3) uniform usamplerBuffer touched;
 
-layout(push_constant, scalar) uniform Push { uint particle_count; } push;
+layout(push_constant, scalar) uniform Push {
+    uint particle_count;
+    uint again;           // 1: those alone that something moved near
+} push;
 
 // Spacings: the kernel's radius and how far a point may be from its particle.
 const float LIST_SPACINGS = KERNEL_SPACINGS + 1.0;
@@ -27,13 +32,17 @@ const float LIST_ACROSS = 0.5;
 const float OFF_PLANE = 0.05;
 
 void main() {
-    uint particle = gl_GlobalInvocationID.x;
-    if (particle >= push.particle_count) {
+    uint entry = gl_GlobalInvocationID.x;
+    if (entry >= push.particle_count) {
+        return;
+    }
+    uint particle = particle_of_entry(entry);
+    if (push.again != 0u && (touched_bits(touched, particle) & LIST_TOUCHED) == 0u) {
         return;
     }
     float spacing = spacing_of_particles();
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
-    uvec4 place = texelFetch(particle_places, int(particle));
+    uvec4 place = texelFetch(particle_entries, int(entry));
     vec3 position = uintBitsToFloat(place.xyz);
     vec3 normal = unpack_direction(place.w);
     float reach = LIST_SPACINGS * spacing;
@@ -46,7 +55,7 @@ void main() {
         int bucket = int(bucket_of(cell, bucket_count));
         uint end = texelFetch(particle_starts, bucket + 1).x;
         [[dont_unroll]] for (uint other = texelFetch(particle_starts, bucket).x; other < end; ++other) {
-            uvec4 other_place = texelFetch(particle_places, int(other));
+            uvec4 other_place = texelFetch(particle_entries, int(other));
             vec3 other_position = uintBitsToFloat(other_place.xyz);
             vec3 way = other_position - position;
             float above = dot(way, normal);
@@ -63,16 +72,15 @@ void main() {
         }
     }
     uint listed = min(found, LIST_CAPACITY);
-    uint kept = listed;
-    vec3 from = above_particle(place, spacing);
-    kept = 0u;
-    [[dont_unroll]] for (uint entry = 0u; entry < listed; ++entry) {
-        uint other = lists[first + entry];
-        vec3 way = position_of_particle(other) - position;
+    vec3 from = above_entry(place, spacing);
+    uint kept = 0u;
+    [[dont_unroll]] for (uint i = 0u; i < listed; ++i) {
+        uint other = lists[first + i];
+        vec3 way = position_of_entry(other) - position;
         // Off the tangent plane may be another layer of thin things.
         bool tested = is_crowded(place.w) || abs(dot(way, normal)) > OFF_PLANE * length(way);
-        if (!tested || other == particle || sees_particle(from, other, spacing)) {
-            lists[first + kept] = other;
+        if (!tested || other == entry || sees_entry(from, other, spacing)) {
+            lists[first + kept] = particle_of_entry(other);
             ++kept;
         }
     }

@@ -4,14 +4,14 @@
 #include "particles/grid.glsl"
 #include "particles/surface_points.glsl"
 
-// Puts one area particle onto the surfaces and counts it in its bucket of the grid.
+// Puts one area particle onto the surfaces (places.glsl) and counts it in its bucket of the grid.
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform samplerBuffer sums;
 layout(set = 0, binding = 1) uniform samplerBuffer spacing;
-layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };  // position, packed shading normal
-layout(set = 0, binding = 3) writeonly buffer Faces { uvec2 faces[]; };    // packed normal of the triangle, bucket
+layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };
+layout(set = 0, binding = 3) writeonly buffer Buckets { uint buckets[]; };
 layout(set = 0, binding = 4) buffer Counts { uint counts[]; };
 
 layout(push_constant, scalar) uniform Push {
@@ -28,6 +28,7 @@ void main() {
     SurfacePoint point = surface_point(sums, push.triangle_count, particle, push.particle_count, 1u);
     uint bucket = bucket_of(cell_of(point.position, texelFetch(spacing, 0).x), push.bucket_count);
     places[particle] = uvec4(floatBitsToUint(point.position), pack_direction(point.normal));
-    faces[particle] = uvec2(pack_direction(point.face), bucket);
+    places[push.particle_count + particle] = uvec4(pack_direction(point.face), point.index, 0u, 0u);
+    buckets[particle] = bucket;
     atomicAdd(counts[bucket], 1u);
 }

@@ -7,6 +7,7 @@ use super::paths::{Paths, WORD, WORDS, Walk};
 use super::view::View;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, ReadBack};
+use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::sppm as shaders;
 
 /// Texels of a photon and of a measurement point (glsl/sppm/photon.glsl).
@@ -118,10 +119,10 @@ impl PhotonMap {
 
     /// Adds the photons to what the measurement points' paths found, and takes them away.
     pub(super) fn gather(&self, graph: &mut Graph<'_>, paths: &Paths, view: &View, disc: Disc) {
-        let scan = shaders::Scan {
-            bucket_counts: self.bucket_counts.texels(WORD),
-            bucket_starts: self.bucket_starts.write(),
-            push: shaders::ScanPush { bucket_count: 1 << (3 * self.bits) },
+        let scan = Starts {
+            counts: self.bucket_counts.texels(WORD),
+            starts: self.bucket_starts.write(),
+            push: StartsPush { bucket_count: 1 << (3 * self.bits) },
         };
         graph.pass("sppm/scan", scan).groups([1, 1, 1]);
         let sort = shaders::Sort {

@@ -293,7 +293,7 @@ pub(crate) struct Sppm;
 impl Estimator for Sppm {
     const NAME: &'static str = "sppm";
     const FIRST_PASS: [&'static str; 2] = ["path", "generate"];
-    const SHADERS: &'static [&'static str] = &["path/*", "particle/*", "sppm/*"];
+    const SHADERS: &'static [&'static str] = &["path/*", "particle/*", "sppm/*", "buckets/*"];
     type Options = SppmOptions;
 
     fn samples(options: &SppmOptions) -> Samples {

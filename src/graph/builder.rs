@@ -66,6 +66,13 @@ impl<'g, 's> PassBuilder<'g, 's> {
         self
     }
 
+    /// Names what the pass leaves in a buffer, in place of a key made of all that it reads: for contents that several ways lead to, the whole work or a part of it
+    /// on what memory holds ([`Graph::carry_on`], `super::carried`). All of them have to leave the same under one key, which has to name all that it depends on.
+    pub(crate) fn leaves<T>(mut self, buffer: BufferRef<T>, key: u64) -> Self {
+        self.pass.named.push((buffer.id, key));
+        self
+    }
+
     fn targets(&mut self) -> &mut Targets {
         &mut self.pass.raster.as_mut().expect("only raster passes have attachments").1
     }

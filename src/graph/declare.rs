@@ -325,7 +325,8 @@ impl<'s> Graph<'s> {
                 if writes {
                     let mut hasher = hasher.clone();
                     (&self.resources[place.0].name, place.1).hash(&mut hasher);
-                    let key = hasher.finish().max(NOTHING + 1);
+                    let made = hasher.finish().max(NOTHING + 1);
+                    let key = pass.named.iter().find(|(id, _)| *id == place.0).map_or(made, |(_, key)| *key);
                     pass.needs.writes.push(Version { place, key });
                     self.resources[place.0].content[place.1 as usize] = (key, pass.dependence);
                 }

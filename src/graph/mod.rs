@@ -17,6 +17,7 @@ pub(crate) mod barriers;
 mod bind;
 pub(crate) mod bindings;
 mod builder;
+mod carried;
 mod declare;
 pub(crate) mod demand;
 mod dependence;

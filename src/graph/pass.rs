@@ -95,6 +95,8 @@ pub(super) struct Pass {
     pub(super) others: Vec<Access>,
     pub(super) raster: Option<(RasterState, Targets)>,
     pub(super) work: Work,
+    /// Buffers whose content it names itself, with the key.
+    pub(super) named: Vec<(usize, u64)>,
     pub(super) needs: Needs,
     pub(super) dependence: Dependence,
     pub(super) counters: Vec<Counter>,
@@ -114,6 +116,7 @@ impl Pass {
             others: Vec::new(),
             raster: None,
             work,
+            named: Vec::new(),
             needs: Needs::default(),
             dependence: Dependence::NONE,
             counters: Vec::new(),

@@ -251,19 +251,20 @@ impl Renderer {
         // Photons and VPLs come from the light views: the surfaces that rays meet stand when a light moves.
         let held = match wanted.rays {
             Rays::None => return Ok(None),
-            Rays::ToSurfaces => self.traced.as_ref().filter(|held| held.surfaces_key == surfaces_key(scene)).cloned(),
+            Rays::ToSurfaces => self.traced.as_ref().filter(|held| held.surfaces_key() == surfaces_key(scene)).cloned(),
             Rays::ToLights => None,
         };
         held.map_or_else(|| self.traced_scene(scene), Ok).map(Some)
     }
 
-    /// The scene as rays meet it, built anew if geometry, materials or lights changed.
+    /// The scene as rays meet it: what of it geometry, materials or lights changed is built anew.
     fn traced_scene(&mut self, scene: &Scene) -> Result<Arc<TracedScene>, Error> {
-        if let Some(held) = self.traced.take().filter(|held| held.key == traced_key(scene)) {
-            return Ok(self.traced.insert(held).clone());
+        let held = self.traced.take().filter(|held| held.is_of(scene));
+        if let Some(held) = held.as_ref().filter(|held| held.key == traced_key(scene)) {
+            return Ok(self.traced.insert(held.clone()).clone());
         }
         self.release_traced_scene();
-        let traced = TracedScene::new(self.store.device(), scene)?;
+        let traced = TracedScene::update(self.store.device(), scene, held.as_deref())?;
         Ok(self.traced.insert(Arc::new(traced)).clone())
     }
 

@@ -41,7 +41,6 @@ pub(super) fn light(
         scene_rays: space.rays.clone(),
         scene_lights: scene.lights(graph),
         particles: space.group.clone(),
-        particle_faces: space.faces.texels(WORD),
         matter: space.matter.texels(FLOATS4),
         arrivals: space.arrivals.texels(WORD),
         glints: glints.unwrap_or(space.arrivals).read(),

@@ -7,11 +7,19 @@
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
 
 mod geometry;
+mod kept;
 #[cfg(test)]
 mod lamp_tests;
 mod lighting;
+mod links;
+mod lists;
+mod measure;
 mod mirrored;
+mod moved;
+#[cfg(test)]
+mod moving_tests;
 pub(crate) mod options;
+mod place;
 mod shading;
 #[cfg(test)]
 mod tests;
@@ -46,7 +54,7 @@ impl Method for Particles {
     }
 
     fn shaders(_: &ParticlesOptions, _: bool) -> Vec<&'static str> {
-        vec!["particles/*"]
+        vec!["particles/*", "buckets/*"]
     }
 
     fn skip(_: &ParticlesOptions, facts: &Facts) -> Option<&'static str> {
@@ -60,7 +68,7 @@ impl Method for Particles {
     fn declare(cx: &mut FrameCx<'_, '_>, options: &ParticlesOptions) -> Result<Option<ImageRef>, Error> {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
-        let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo));
+        let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo()));
         let space = ParticleSpace::declare(cx.graph, scene, options);
         let radiance = lighting::light(cx.graph, scene, &space, options, steps).radiance;
         Ok(Some(shading::shade(cx, &space, shift, options.gather * options.gather, radiance)))

@@ -23,7 +23,14 @@ pub(super) struct EmitterTable {
     /// The same for emissive triangles alone.
     pub(super) triangle_records: Vec<[u32; 4]>,
     /// What those send out, W (luminance).
-    pub(super) triangle_power: f64,
+    triangle_power: f64,
+}
+
+impl EmitterTable {
+    /// From a triangle's density among all lights to that among emissive triangles.
+    pub(super) fn density_scale(&self) -> f32 {
+        if self.triangle_power > 0.0 { (self.power / self.triangle_power) as f32 } else { 1.0 }
+    }
 }
 
 /// What can be drawn, with its share.

@@ -3,11 +3,20 @@
 mod alias_table;
 mod emissive_cells;
 mod emitters;
+mod hierarchy;
+mod looks;
+mod motion;
 mod sobol;
+mod surfaces;
 mod targets;
+#[cfg(test)]
+mod tests;
 mod texels;
 mod traced_scene;
 mod triangles;
+mod uploaded;
 
+pub(crate) use self::motion::Motion;
+pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;
-pub(crate) use self::traced_scene::{TracedScene, surfaces_key, traced_key};
+pub(crate) use self::traced_scene::{TracedScene, traced_key};

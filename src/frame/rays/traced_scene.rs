@@ -1,65 +1,38 @@
-//! The scene as rays meet it (glsl/lib/traced_scene.glsl): all instances flattened to triangles in render space, their corners'
-//! attributes, a bounding volume hierarchy, textures as plain texels, and what next-event estimation draws lights from.
+//! The scene as rays meet it (glsl/lib/traced_scene.glsl): surfaces, what they are made of, and what next-event estimation draws lights from. Each stands
+//! while what it is made of does: a moved light makes no hierarchy, a moved thing no textures.
 
 use std::sync::Arc;
 
-use ash::vk;
-use glam::DVec3;
-
 use super::emitters::{EmitterTable, emitter_table};
-use super::sobol::sobol_points;
-use super::targets::{Reach, TargetShares, Targets, targets};
-use super::texels::Texels;
-use super::triangles::{TracedTriangle, flatten};
+use super::looks::Looks;
+use super::surfaces::{Surfaces, surfaces_key};
+use super::targets::{Reach, TargetShares, targets};
+use super::uploaded::{FLOAT, Uploaded, WORDS};
 use crate::frame::light_set::{punctual_light, shining_lights};
-use crate::frame::materials::{material_record, texture_kinds};
-use crate::frame::textures::texture_uses;
 use crate::graph::bindings::TexelBuffer;
 use crate::graph::{Dependence, Graph, hash_of};
-use crate::scene::bvh::{Bvh, BvhTriangle};
-use crate::scene::{Alpha, Bounds, Cutout, Extent, Facts, Material, Scene, cutout, has_specular_lobe};
+use crate::scene::{Alpha, Facts, Material, Scene};
 use crate::shaders::groups::{LightTargets, SceneLights, SceneRays};
 use crate::shaders::types;
-use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
+use crate::vulkan::{Device, VulkanError};
 
-/// A scene on the device, ready for rays.
+/// A scene on the device, ready for rays. What is asked of its surfaces, they answer.
 pub(crate) struct TracedScene {
     pub(crate) key: u64,
-    /// Of what rays meet, whatever shines on it.
-    pub(crate) surfaces_key: u64,
-    /// Of the triangles' records, which hold what points of lights are drawn with.
-    triangles_key: u64,
-    pub(crate) origin: DVec3,
-    /// Of the box around what matters, in render space.
-    pub(crate) middle_rs: DVec3,
-    /// Half its diagonal, metres.
-    pub(crate) radius: f64,
-    /// Some surface is farther away from its middle.
-    pub(crate) far_surfaces: bool,
+    /// [`Scene::identity`]
+    scene: u64,
+    pub(super) surfaces: Arc<Surfaces>,
+    pub(super) looks: Arc<Looks>,
     pub(crate) facts: Facts,
     pub(crate) sky: [f32; 3],
-    /// The kinds of textures that any material reads, as the shaders' bits.
-    pub(crate) texture_kinds: u32,
     pub(crate) emissive_textures: bool,
     /// Some emissive surface is cut out by its alpha.
     emissive_cutouts: bool,
     /// Points of some emissive triangle are drawn cell by cell.
     emissive_cells: bool,
-    /// Some triangle is there at some of its points only.
-    pub(crate) cutouts: bool,
     pub(crate) emitter_count: u32,
     /// Some light ends at a range, so that paths from it are none.
     pub(crate) ranged_lights: bool,
-    /// Rays that start as far from surfaces as rounding of the largest coordinate asks would leave out an eighth of the finer triangles: rounding is bounded
-    /// triangle by triangle (glsl/lib/bvh.glsl).
-    wide: bool,
-    pub(crate) triangle_count: u32,
-    /// The size that all but a sixteenth of the triangles have, metres.
-    pub(crate) fine_size: f64,
-    /// The largest share of light that some material with a diffuse lobe reflects, textures aside.
-    pub(crate) greatest_albedo: f64,
-    /// Of the triangles that matter, m².
-    pub(crate) area: f64,
     pub(crate) punctual_count: u32,
     pub(crate) emissive_count: u32,
     /// From a triangle's density among all lights to that among emissive triangles.
@@ -72,126 +45,117 @@ pub(crate) struct TracedScene {
     pub(crate) power: f64,
     /// Where those paths are sent.
     pub(crate) target_shares: TargetShares,
-    buffers: Vec<(&'static str, Arc<Buffer>, vk::Format)>,
+    /// Triangles, with the densities that points of lights are drawn with.
+    pub(super) triangles: Uploaded,
+    emitters: Uploaded,
+    pub(super) emissive: Uploaded,
+    pub(super) lights: Uploaded,
+    targets: Uploaded,
+    target_densities: Uploaded,
+    /// Of the densities that points of emissive surfaces are drawn with.
+    densities_key: u64,
 }
 
-const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
-const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
-/// What a dielectric with the usual index reflects of light from all around: 0.04 + 0.96/21.
-const MEAN_FRESNEL: f64 = 0.0857;
-const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
-const HALVES: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+impl std::ops::Deref for TracedScene {
+    type Target = Surfaces;
+
+    fn deref(&self) -> &Surfaces {
+        &self.surfaces
+    }
+}
+
+/// Names a scene's content within this process, whatever the camera sees of it.
+pub(crate) fn traced_key(scene: &Scene) -> u64 {
+    hash_of(&(surfaces_key(scene), scene.revisions().lights))
+}
 
 impl TracedScene {
-    /// Flattens, sorts and uploads the scene as it is now.
+    /// The scene as it is now.
     pub(crate) fn new(device: &Arc<Device>, scene: &Scene) -> Result<TracedScene, VulkanError> {
-        let Extent { origin, middle, .. } = scene.extent();
-        let bulk = scene.bulk().unwrap_or(Bounds { min: middle - 1.0, max: middle + 1.0 });
-        let (middle_rs, radius) = (bulk.center() - origin, bulk.radius().max(1e-30));
+        TracedScene::update(device, scene, None)
+    }
+
+    /// The same, with what still holds of `held`.
+    pub(crate) fn update(
+        device: &Arc<Device>,
+        scene: &Scene,
+        held: Option<&TracedScene>,
+    ) -> Result<TracedScene, VulkanError> {
         let facts = scene.facts();
-        let (triangles, corners) = flatten(scene, origin, &facts)?;
-        let lights = shining_lights(scene);
-        let EmitterTable { records: emitters, light_densities, cells, power, triangle_records, triangle_power } =
-            emitter_table(scene, &triangles, &lights, radius);
-        let mut records: Vec<[u32; 4]> = (0..)
-            .zip(triangles.iter().zip(&light_densities))
-            .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index)))
-            .collect();
-        records.extend(&cells.records);
-        let Targets { records: target_records, densities: target_densities, shares: target_shares } =
-            targets(&triangles, scene.materials(), &lights, &emitters, Reach { origin, radius });
-        let cutouts: Vec<Cutout> =
-            scene.materials().iter().map(|material| cutout(material, scene.textures(), facts.vertex_colors)).collect();
-        let bvh_triangles: Vec<BvhTriangle> = triangles
-            .iter()
-            .map(|triangle| match cutouts[triangle.material as usize] {
-                // What is not there has no area.
-                Cutout::Nothing => BvhTriangle::default(),
-                kind => BvhTriangle {
-                    corners: triangle.corners.map(|corner| corner.to_array()),
-                    flags: u32::from(kind == Cutout::PerPoint),
-                },
-            })
-            .collect();
-        let mut bvh = Bvh::build(&bvh_triangles);
-        let fine = fine_size(triangles.iter().filter(|triangle| triangle.nearest(middle_rs) <= radius));
-        bvh.set_least_offset((radius / 131_072.0).min(fine / 64.0) as f32);
-        let texels = Texels::new(scene.textures())?;
-        let materials: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
-        let media: Vec<[f32; 4]> = scene.materials().iter().map(Material::medium).collect();
-        let uses: Vec<types::MaterialTextures> = scene
-            .materials()
-            .iter()
-            .map(|material| texture_uses(material, |texture| u32::try_from(texture.texture.0).unwrap_or(0)))
-            .collect();
-        let light_records: Vec<types::Light> = lights.iter().map(|placed| punctual_light(placed, origin)).collect();
-        let upload = |name: &'static str, bytes: &[u8], format: vk::Format| {
-            let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-            Ok::<_, VulkanError>((name, buffer_with(device, name, bytes, usage)?, format))
+        let key = Looks::key(scene, &facts);
+        let looks = match held.filter(|held| held.looks.key == key) {
+            Some(held) => held.looks.clone(),
+            None => Arc::new(Looks::new(device, scene, &facts)?),
         };
-        let buffers = vec![
-            upload("traced.bvh_nodes", bytemuck::cast_slice(&bvh.nodes), WORDS)?,
-            upload("traced.bvh_triangles", bytemuck::cast_slice(&bvh.triangles), FLOATS)?,
-            upload("traced.triangles", bytemuck::cast_slice(&records), WORDS)?,
-            upload("traced.corner_colors", bytemuck::cast_slice(&corners.colors), BYTES)?,
-            upload("traced.corner_texcoords", bytemuck::cast_slice(&corners.texcoords), FLOATS)?,
-            upload("traced.corner_tangents", bytemuck::cast_slice(&corners.tangents), FLOATS)?,
-            upload("traced.materials", bytemuck::cast_slice(&materials), WORDS)?,
-            upload("traced.media", bytemuck::cast_slice(&media), FLOATS)?,
-            upload("traced.material_textures", bytemuck::cast_slice(&uses), WORDS)?,
-            upload("traced.texture_table", bytemuck::cast_slice(&texels.table), WORDS)?,
-            upload("traced.texels", bytemuck::cast_slice(&texels.texels), HALVES)?,
-            upload("traced.emitters", bytemuck::cast_slice(&emitters), WORDS)?,
-            upload("traced.emissive", bytemuck::cast_slice(&triangle_records), WORDS)?,
-            upload("traced.lights", bytemuck::cast_slice(&light_records), WORDS)?,
-            upload("traced.targets", bytemuck::cast_slice(&target_records), WORDS)?,
-            upload("traced.target_densities", bytemuck::cast_slice(&target_densities), FLOAT)?,
-            upload("traced.sobol", bytemuck::cast_slice(&sobol_points()), WORDS)?,
-        ];
-        let revisions = scene.revisions();
+        let surfaces = match held.filter(|held| held.surfaces.key == surfaces_key(scene)) {
+            Some(held) => held.surfaces.clone(),
+            None => {
+                // Other materials make other particles.
+                let before = held.filter(|held| Arc::ptr_eq(&held.looks, &looks)).map(|held| &*held.surfaces);
+                Arc::new(Surfaces::new(device, scene, &looks, &facts, before)?)
+            }
+        };
+        let (triangles, origin, radius) = (&surfaces.triangles, surfaces.origin, surfaces.radius);
+        let shining = shining_lights(scene);
+        let table = emitter_table(scene, triangles, &shining, radius);
+        let reach = Reach { origin, radius };
+        let found = targets(triangles, scene.materials(), &shining, &table.records, reach);
+        let lights: Vec<types::Light> = shining.iter().map(|placed| punctual_light(placed, origin)).collect();
+        let held = held.map(|held| &held.triangles);
+        let emits = |wanted: &dyn Fn(&Material) -> bool| {
+            scene.materials().iter().any(|material| material.emits() && wanted(material))
+        };
+        let name = |content: &[u32]| hash_of(&(origin.to_array().map(f64::to_bits), content));
+        let upload = |list: &'static str, words: &[[u32; 4]]| {
+            Uploaded::new(device, list, words, WORDS, name(bytemuck::cast_slice(words)))
+        };
+        let densities: &[u32] = bytemuck::cast_slice(&found.densities);
         Ok(TracedScene {
             key: traced_key(scene),
-            surfaces_key: surfaces_key(scene),
-            triangles_key: hash_of(&(surfaces_key(scene), &records)),
-            origin,
-            middle_rs,
-            radius,
-            far_surfaces: triangles.iter().any(|triangle| triangle.farthest(middle_rs) > radius * (1.0 + 1e-6)),
+            scene: scene.identity(),
             facts,
             sky: scene.sky(),
-            texture_kinds: scene.materials().iter().fold(0, |kinds, material| kinds | texture_kinds(material)),
-            emissive_textures: scene
-                .materials()
-                .iter()
-                .any(|material| material.emits() && material.emissive_texture.is_some()),
-            emissive_cutouts: scene
-                .materials()
-                .iter()
-                .any(|material| material.emits() && material.alpha != Alpha::Opaque),
-            emissive_cells: !cells.records.is_empty(),
-            wide: triangles.iter().any(|triangle| triangle.farthest(DVec3::ZERO) / 65536.0 > fine / 8.0),
-            cutouts: triangles.iter().any(|triangle| cutouts[triangle.material as usize] == Cutout::PerPoint),
-            emitter_count: u32::try_from(emitters.len()).unwrap_or(0),
-            ranged_lights: lights.iter().any(|light| light.range.is_some()),
-            area: triangles
-                .iter()
-                .filter(|triangle| triangle.nearest(middle_rs) <= radius)
-                .map(TracedTriangle::area)
-                .sum(),
-            triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
-            fine_size: fine,
-            greatest_albedo: scene.materials().iter().map(reflected).fold(0.0, f64::max),
-            punctual_count: u32::try_from(lights.len()).unwrap_or(0),
-            emissive_count: u32::try_from(triangle_records.len()).unwrap_or(0),
-            emissive_density_scale: if triangle_power > 0.0 { (power / triangle_power) as f32 } else { 1.0 },
+            emissive_textures: emits(&|material| material.emissive_texture.is_some()),
+            emissive_cutouts: emits(&|material| material.alpha != Alpha::Opaque),
+            emissive_cells: !table.cells.records.is_empty(),
+            emitter_count: u32::try_from(table.records.len()).unwrap_or(0),
+            ranged_lights: shining.iter().any(|light| light.range.is_some()),
+            punctual_count: u32::try_from(shining.len()).unwrap_or(0),
+            emissive_count: u32::try_from(table.triangle_records.len()).unwrap_or(0),
+            emissive_density_scale: table.density_scale(),
             greatest_radiance: scene.materials().iter().flat_map(|material| material.emissive).fold(0.0, f32::max),
-            light_paths: facts.glossy && !emitters.is_empty(),
-            power,
-            target_shares,
-            buffers,
+            light_paths: facts.glossy && !table.records.is_empty(),
+            power: table.power,
+            target_shares: found.shares,
+            triangles: records(device, &surfaces, &table, held)?,
+            emitters: upload("traced.emitters", &table.records)?,
+            emissive: upload("traced.emissive", &table.triangle_records)?,
+            lights: {
+                let words: &[u32] = bytemuck::cast_slice(&lights);
+                Uploaded::new(device, "traced.lights", words, WORDS, name(words))?
+            },
+            targets: upload("traced.targets", &found.records)?,
+            target_densities: Uploaded::new(device, "traced.target_densities", densities, FLOAT, name(densities))?,
+            densities_key: hash_of(&bytemuck::cast_slice::<f32, u32>(&table.light_densities)),
+            surfaces,
+            looks,
         })
-        .inspect(|_| tracing::debug!("traced scene of revision {revisions:?}"))
+        .inspect(|_| tracing::debug!("traced scene of revision {:?}", scene.revisions()))
+    }
+
+    /// Whether it was made of `scene`, at any time.
+    pub(crate) fn is_of(&self, scene: &Scene) -> bool {
+        self.scene == scene.identity()
+    }
+
+    /// Of what rays meet, whatever shines on it.
+    pub(crate) fn surfaces_key(&self) -> u64 {
+        self.surfaces.key
+    }
+
+    /// The largest share of light that some material with a diffuse lobe reflects, textures aside.
+    pub(crate) fn greatest_albedo(&self) -> f64 {
+        self.looks.greatest_albedo
     }
 
     /// Whether lights send out paths of their own: where something glossy may gather their light, and more than direct light is
@@ -202,88 +166,88 @@ impl TracedScene {
 
     /// Device memory, bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.buffers.iter().map(|(_, buffer, _)| buffer.bytes()).sum()
-    }
-
-    fn bind(&self, graph: &mut Graph<'_>, name: &str, key: u64, dependence: Dependence) -> TexelBuffer {
-        let found = self.buffers.iter().find(|(known, ..)| *known == name);
-        let (name, buffer, format) = found.expect("every buffer is made with the scene");
-        graph.import_buffer::<u32>(name, buffer, key, dependence).texels(*format)
+        let own =
+            [&self.triangles, &self.emitters, &self.emissive, &self.lights, &self.targets, &self.target_densities];
+        self.surfaces.bytes() + self.looks.bytes() + own.iter().map(|list| list.bytes()).sum::<u64>()
     }
 
     /// What rays meet, as passes bind it.
     pub(crate) fn rays(&self, graph: &mut Graph<'_>) -> SceneRays {
+        let (surfaces, looks) = (&*self.surfaces, &*self.looks);
         let (geometry, materials) = (Dependence::GEOMETRY, Dependence::MATERIALS);
-        let mut bind = |name: &str, dependence| self.bind(graph, name, self.surfaces_key, dependence);
         SceneRays {
-            bvh_nodes: bind("traced.bvh_nodes", geometry),
-            bvh_triangles: bind("traced.bvh_triangles", geometry),
-            corner_colors: bind("traced.corner_colors", geometry),
-            corner_texcoords: bind("traced.corner_texcoords", geometry),
-            corner_tangents: bind("traced.corner_tangents", geometry),
-            materials: bind("traced.materials", materials),
-            media: bind("traced.media", materials),
-            material_textures: bind("traced.material_textures", materials),
-            texture_table: bind("traced.texture_table", materials),
-            texels: bind("traced.texels", materials),
-            sobol: bind("traced.sobol", Dependence::NONE),
-            // They hold the densities that lights are drawn with.
-            triangles: self.bind(graph, "traced.triangles", self.triangles_key, geometry),
-            alpha_masks: u32::from(self.cutouts),
+            bvh_nodes: surfaces.nodes.texels(graph, geometry),
+            bvh_triangles: surfaces.leaves.texels(graph, geometry),
+            corner_colors: surfaces.colors.texels(graph, geometry),
+            corner_texcoords: surfaces.texcoords.texels(graph, geometry),
+            corner_tangents: surfaces.tangents.texels(graph, geometry),
+            materials: looks.materials.texels(graph, materials),
+            media: looks.media.texels(graph, materials),
+            material_textures: looks.uses.texels(graph, materials),
+            texture_table: looks.table.texels(graph, materials),
+            texels: looks.texels.texels(graph, materials),
+            sobol: looks.sobol.texels(graph, Dependence::NONE),
+            triangles: self.triangles.texels(graph, geometry),
+            alpha_masks: u32::from(surfaces.cutouts),
             vertex_colors: u32::from(self.facts.vertex_colors),
             normal_maps: u32::from(self.facts.normal_mapped),
-            textures: self.texture_kinds,
+            textures: looks.texture_kinds,
             emissive_cells: u32::from(self.emissive_cells),
-            wide: u32::from(self.wide),
+            wide: u32::from(surfaces.wide),
         }
+    }
+
+    /// The area of each triangle that matters, as it stands wherever the triangle moves.
+    pub(crate) fn own_areas(&self, graph: &mut Graph<'_>) -> TexelBuffer {
+        self.surfaces.own_areas.texels(graph, Dependence::GEOMETRY)
+    }
+
+    /// Names what emissive surfaces send out, wherever they stand.
+    pub(crate) fn emission_key(&self) -> u64 {
+        let scales = [self.emissive_density_scale, self.greatest_radiance].map(f32::to_bits);
+        hash_of(&(self.looks.key, self.emissive.key, self.densities_key, scales))
     }
 
     /// Where light paths are sent.
     pub(crate) fn targets(&self, graph: &mut Graph<'_>) -> LightTargets {
         let lights = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS;
-        let mut bind = |name: &str| self.bind(graph, name, self.key, lights);
-        LightTargets { targets: bind("traced.targets"), target_densities: bind("traced.target_densities") }
+        let [targets, target_densities] =
+            [&self.targets, &self.target_densities].map(|list| list.texels(graph, lights));
+        LightTargets { targets, target_densities }
     }
 
     /// What shines on it.
     pub(crate) fn lights(&self, graph: &mut Graph<'_>) -> SceneLights {
         let lights = Dependence::GEOMETRY | Dependence::MATERIALS | Dependence::LIGHTS;
-        let mut bind = |name: &str| self.bind(graph, name, self.key, lights);
+        let [emitters, emissive_triangles, punctual_lights] =
+            [&self.emitters, &self.emissive, &self.lights].map(|list| list.texels(graph, lights));
         SceneLights {
-            emitters: bind("traced.emitters"),
-            emissive_triangles: bind("traced.emissive"),
-            punctual_lights: bind("traced.lights"),
+            emitters,
+            emissive_triangles,
+            punctual_lights,
             emissive_textures: u32::from(self.emissive_textures),
             emissive_cutouts: u32::from(self.emissive_cutouts),
         }
     }
 }
 
-/// What a material with a diffuse lobe reflects of light, in the brightest channel, without its textures; its specular layer reflects what it keeps from that lobe.
-fn reflected(material: &Material) -> f64 {
-    let [red, green, blue, _] = material.base_color;
-    let lobe = (1.0 - material.metallic) * (1.0 - material.transmission) * if material.unlit { 0.0 } else { 1.0 };
-    let diffuse = f64::from(red.max(green).max(blue) * lobe).clamp(0.0, 1.0);
-    let layer = if has_specular_lobe(material) { MEAN_FRESNEL } else { 0.0 };
-    if diffuse > 0.0 { diffuse + layer * (1.0 - diffuse) } else { 0.0 }
-}
-
-/// The size that all but a sixteenth of the triangles have, metres.
-fn fine_size<'t>(triangles: impl Iterator<Item = &'t TracedTriangle>) -> f64 {
-    let mut sizes: Vec<f64> = triangles.map(|triangle| triangle.area().sqrt()).filter(|&size| size > 0.0).collect();
-    let place = sizes.len() / 16;
-    if sizes.is_empty() { f64::INFINITY } else { *sizes.select_nth_unstable_by(place, f64::total_cmp).1 }
-}
-
-/// Names a scene's content within this process, whatever the camera sees of it.
-pub(crate) fn traced_key(scene: &Scene) -> u64 {
-    let revisions = scene.revisions();
-    hash_of(&(surfaces_key(scene), revisions.lights))
-}
-
-/// The same of its surfaces alone.
-pub(crate) fn surfaces_key(scene: &Scene) -> u64 {
-    let revisions = scene.revisions();
-    let place = scene.extent().origin.to_array().map(f64::to_bits);
-    hash_of(&(scene.identity(), revisions.geometry, revisions.materials, place))
+/// The triangles' records; those that are `held` if they are the same.
+fn records(
+    device: &Arc<Device>,
+    surfaces: &Surfaces,
+    table: &EmitterTable,
+    held: Option<&Uploaded>,
+) -> Result<Uploaded, VulkanError> {
+    let EmitterTable { light_densities, cells, .. } = table;
+    let densities: &[u32] = bytemuck::cast_slice(light_densities);
+    // Where on its triangles a surface shines follows from geometry and materials.
+    let key = hash_of(&(surfaces.key, densities));
+    if let Some(held) = held.filter(|held| held.key == key) {
+        return Ok(held.clone());
+    }
+    let records = (0..)
+        .zip(surfaces.triangles.iter().zip(light_densities))
+        .flat_map(|(index, (triangle, density))| triangle.record(*density, cells.of_triangle(index)));
+    let records: Vec<[u32; 4]> = records.chain(cells.records.iter().copied()).collect();
+    Uploaded::new(device, "traced.triangles", &records, WORDS, key)
 }

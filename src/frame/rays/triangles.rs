@@ -17,13 +17,16 @@ pub(super) struct TracedTriangle {
     pub(super) material: u32,
     /// Packed, at the corners; `None`: flat.
     normals: Option<[u32; 3]>,
+    /// Its area by its mesh and how that is stretched, m²: the same bits wherever it moves.
+    pub(super) own_area: f32,
 }
 
 impl TracedTriangle {
     /// Without vertex normals.
     #[cfg(test)]
     pub(super) fn flat(corners: [Vec3; 3], material: u32) -> TracedTriangle {
-        TracedTriangle { corners, material, normals: None }
+        let [edge1, edge2] = [corners[1] - corners[0], corners[2] - corners[0]];
+        TracedTriangle { corners, material, normals: None, own_area: 0.5 * edge1.cross(edge2).length() }
     }
 
     fn edges(&self) -> [Vec3; 2] {
@@ -105,10 +108,13 @@ pub(super) fn flatten(
         let material = u32::try_from(primitive.material.0).unwrap_or(0);
         triangles.extend(primitive.indices.chunks_exact(3).map(|indices| {
             let vertices = order.map(|corner| indices[corner] as usize);
+            let [a, b, c] =
+                [0, 1, 2].map(|corner| DVec3::from(primitive.positions[indices[corner] as usize].map(f64::from)));
             TracedTriangle {
                 corners: vertices.map(|vertex| positions[vertex]),
                 material,
                 normals: normals.as_ref().map(|normals| vertices.map(|vertex| normals[vertex])),
+                own_area: (0.5 * (world.matrix3 * (b - a)).cross(world.matrix3 * (c - a)).length()) as f32,
             }
         }));
         corners.extend(primitive, order, world.matrix3, facts);

@@ -1,0 +1,131 @@
+//! The surfaces as rays meet them: all instances flattened to triangles in render space, their corners' attributes, and the hierarchy of their boxes. It stands
+//! while geometry and materials do, whatever shines on it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::hierarchy::hierarchy;
+use super::looks::Looks;
+use super::motion::{Motion, Part, motion, parts};
+use super::triangles::{Corners, TracedTriangle, flatten};
+use super::uploaded::{BYTES, FLOAT, FLOATS, Uploaded, WORDS};
+use crate::graph::hash_of;
+use crate::scene::{Bounds, Cutout, Extent, Facts, Scene};
+use crate::vulkan::{Device, VulkanError};
+
+pub(crate) struct Surfaces {
+    pub(super) key: u64,
+    pub(crate) origin: DVec3,
+    /// Of the box around what matters, in render space.
+    pub(crate) middle_rs: DVec3,
+    /// Half its diagonal, metres.
+    pub(crate) radius: f64,
+    /// Some surface is farther away from its middle.
+    pub(crate) far_surfaces: bool,
+    /// Some triangle is there at some of its points only.
+    pub(crate) cutouts: bool,
+    /// Rays that start as far from surfaces as rounding of the largest coordinate asks would leave out an eighth of the finer triangles: rounding is bounded
+    /// triangle by triangle (glsl/lib/bvh.glsl).
+    pub(super) wide: bool,
+    pub(crate) triangle_count: u32,
+    /// The size that all but a sixteenth of the triangles have, metres.
+    pub(crate) fine_size: f64,
+    /// Of the triangles that matter, m².
+    pub(crate) area: f64,
+    /// The same by the meshes: the same bits wherever they move.
+    pub(crate) own_area: f64,
+    /// How it came of what was before, if a part of the surfaces moved and nothing else happened.
+    pub(crate) motion: Option<Motion>,
+    parts: Vec<Part>,
+    pub(super) triangles: Vec<TracedTriangle>,
+    /// Of each triangle that matters, m², the same bits wherever it moves; 0 for others.
+    areas: Vec<f32>,
+    pub(super) own_areas: Uploaded,
+    pub(super) nodes: Uploaded,
+    pub(super) leaves: Uploaded,
+    pub(super) colors: Uploaded,
+    pub(super) texcoords: Uploaded,
+    pub(super) tangents: Uploaded,
+}
+
+/// Names a scene's surfaces within this process.
+pub(crate) fn surfaces_key(scene: &Scene) -> u64 {
+    let revisions = scene.revisions();
+    let place = scene.extent().origin.to_array().map(f64::to_bits);
+    hash_of(&(scene.identity(), revisions.geometry, revisions.materials, place))
+}
+
+impl Surfaces {
+    /// Flattens, sorts and uploads the surfaces as they are now.
+    pub(super) fn new(
+        device: &Arc<Device>,
+        scene: &Scene,
+        looks: &Looks,
+        facts: &Facts,
+        before: Option<&Surfaces>,
+    ) -> Result<Surfaces, VulkanError> {
+        let key = surfaces_key(scene);
+        let Extent { origin, middle, .. } = scene.extent();
+        let bulk = scene.bulk().unwrap_or(Bounds { min: middle - 1.0, max: middle + 1.0 });
+        let (middle_rs, radius) = (bulk.center() - origin, bulk.radius().max(1e-30));
+        let (triangles, corners) = flatten(scene, origin, facts)?;
+        let matters = |triangle: &&TracedTriangle| triangle.nearest(middle_rs) <= radius;
+        let fine = fine_size(triangles.iter().filter(matters).map(TracedTriangle::area));
+        let least_offset = (radius / 131_072.0).min(fine / 64.0) as f32;
+        let areas: Vec<f32> =
+            triangles.iter().map(|triangle| if matters(&triangle) { triangle.own_area } else { 0.0 }).collect();
+        let bvh = hierarchy(&triangles, &looks.cutouts, least_offset);
+        let cut = |triangle: &TracedTriangle| looks.cutouts[triangle.material as usize] == Cutout::PerPoint;
+        let parts = parts(scene);
+        let Corners { colors, texcoords, tangents } = &corners;
+        Ok(Surfaces {
+            key,
+            origin,
+            middle_rs,
+            radius,
+            far_surfaces: triangles.iter().any(|triangle| triangle.farthest(middle_rs) > radius * (1.0 + 1e-6)),
+            cutouts: triangles.iter().any(cut),
+            wide: triangles.iter().any(|triangle| triangle.farthest(DVec3::ZERO) / 65536.0 > fine / 8.0),
+            triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
+            fine_size: fine_size(areas.iter().map(|&area| f64::from(area))),
+            own_area: areas.iter().map(|&area| f64::from(area)).sum(),
+            area: triangles.iter().filter(matters).map(TracedTriangle::area).sum(),
+            motion: before.and_then(|before| before.motion_to(&parts, &triangles, &areas, [origin, middle_rs])),
+            parts,
+            own_areas: Uploaded::new(device, "traced.areas", &areas, FLOAT, key)?,
+            areas,
+            nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
+            leaves: Uploaded::new(device, "traced.bvh_triangles", &bvh.triangles, FLOATS, key)?,
+            colors: Uploaded::new(device, "traced.corner_colors", colors, BYTES, key)?,
+            texcoords: Uploaded::new(device, "traced.corner_texcoords", texcoords, FLOATS, key)?,
+            tangents: Uploaded::new(device, "traced.corner_tangents", tangents, FLOATS, key)?,
+            triangles,
+        })
+    }
+
+    /// What moved since, if nothing else did that particles' places depend on.
+    fn motion_to(
+        &self,
+        parts: &[Part],
+        triangles: &[TracedTriangle],
+        areas: &[f32],
+        [origin, middle_rs]: [DVec3; 2],
+    ) -> Option<Motion> {
+        let stands = self.origin == origin && self.middle_rs == middle_rs && self.areas == areas;
+        let (before, after) = ((&self.parts[..], &self.triangles[..]), (parts, triangles));
+        if stands { motion(self.key, before, after) } else { None }
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        let all = [&self.own_areas, &self.nodes, &self.leaves, &self.colors, &self.texcoords, &self.tangents];
+        all.iter().map(|list| list.bytes()).sum()
+    }
+}
+
+/// The size that all but a sixteenth of the triangles have, metres.
+fn fine_size(areas: impl Iterator<Item = f64>) -> f64 {
+    let mut sizes: Vec<f64> = areas.map(f64::sqrt).filter(|&size| size > 0.0).collect();
+    let place = sizes.len() / 16;
+    if sizes.is_empty() { f64::INFINITY } else { *sizes.select_nth_unstable_by(place, f64::total_cmp).1 }
+}

@@ -1,0 +1,29 @@
+//! Contents that several ways lead to: all of the work, or a part of it on what memory holds of an earlier frame. A pass names such a content itself
+//! ([`PassBuilder::leaves`](super::builder::PassBuilder::leaves)); which way a frame goes is decided while it is declared, by what memory holds.
+//!
+//! The key has to name all that the content depends on, and both ways have to leave the same.
+
+use super::bindings::BufferRef;
+use super::declare::Graph;
+use super::resource::Body;
+
+impl Graph<'_> {
+    /// A buffer for such contents: no frame's use of it moves it to other memory.
+    pub(crate) fn carried_buffer<T>(&mut self, name: &str, count: usize) -> BufferRef<T> {
+        let buffer = self.buffer(name, count);
+        self.keep_for_passes(buffer);
+        buffer
+    }
+
+    /// Whether memory holds the content `key` of a buffer.
+    pub(crate) fn finds<T>(&self, buffer: BufferRef<T>, key: u64) -> bool {
+        let resource = &self.resources[buffer.id];
+        let Body::Buffer { bytes } = resource.body else { return false };
+        self.store.fits(resource) && self.store.buffer_key(&resource.name, bytes) == Some(key)
+    }
+
+    /// Lets passes start from the content `key` of a buffer, which memory holds ([`Graph::finds`]).
+    pub(crate) fn carry_on<T>(&mut self, buffer: BufferRef<T>, key: u64) {
+        self.resources[buffer.id].content[0].0 = key;
+    }
+}
