@@ -1,8 +1,6 @@
 //! The geometry stage: particles on the surfaces, what they stand for, links between them, and the lists by which their irradiance is read. It stands while
 //! geometry and materials do.
 
-use ash::vk;
-
 use super::kept::{Chunk, Kept};
 use super::links::link;
 use super::lists::list;
@@ -10,20 +8,16 @@ use super::measure::measure;
 use super::moved::Moved;
 use super::options::ParticlesOptions;
 use super::place::Placed;
+use super::stage::Stage;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
-use crate::shaders::groups::{Lobes, Particles, SceneRays};
+use crate::shaders::groups::{Particles, SceneRays};
 
 /// A particle's spacing over the scene's radius at most and at least, unless the options say how many there are; between these half the size of its finer
 /// triangles.
 const SPACING: f64 = 0.0125;
 const FINEST: f64 = 0.0025;
-
-pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
-pub(super) const WORDS4: vk::Format = vk::Format::R32G32B32A32_UINT;
-pub(super) const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
-pub(super) const FLOATS4: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// What the geometry stage leaves.
 pub(super) struct ParticleSpace {
@@ -48,12 +42,6 @@ fn count_of(scene: &TracedScene, options: &ParticlesOptions) -> u32 {
     if options.count > 0 { options.count } else { by_area.clamp(20_000.0, 200_000.0) as u32 }
 }
 
-/// Those that mirrors and glass have.
-pub(super) fn lobes_of(scene: &TracedScene) -> Lobes {
-    let facts = &scene.facts;
-    Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) }
-}
-
 impl ParticleSpace {
     /// Declares the stage.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
@@ -70,23 +58,16 @@ impl ParticleSpace {
         list(graph, &stage);
         let Stage { placed: Placed { rays, group, .. }, kept, .. } = stage;
         let Kept { chunks, scatter_links, arrivals, lists, list_lengths, .. } = kept;
-        ParticleSpace { count: particle_count, rays, group, matter, chunks, scatter_links, arrivals, lists, list_lengths }
-    }
-}
-
-/// What the passes of the stage share.
-pub(super) struct Stage {
-    pub(super) particle_count: u32,
-    pub(super) placed: Placed,
-    pub(super) kept: Kept,
-    /// Present if only what this is about is done, on what memory holds of an earlier frame.
-    pub(super) moved: Option<Moved>,
-    /// Points and link ends that no particle stands for.
-    pub(super) lost: BufferRef<u32>,
-}
-
-impl Stage {
-    pub(super) fn threads(&self) -> [u32; 3] {
-        [self.particle_count, 1, 1]
+        ParticleSpace {
+            count: particle_count,
+            rays,
+            group,
+            matter,
+            chunks,
+            scatter_links,
+            arrivals,
+            lists,
+            list_lengths,
+        }
     }
 }

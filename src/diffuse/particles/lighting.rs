@@ -1,6 +1,8 @@
 //! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
 
-use super::geometry::{FLOATS4, ParticleSpace, WORD, lobes_of};
+use super::formats::{FLOATS4, WORD};
+use super::geometry::ParticleSpace;
+use super::links::lobes_of;
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;

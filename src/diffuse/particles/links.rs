@@ -1,14 +1,24 @@
 //! Links: what particles see of each other.
 
-use super::geometry::{FLOATS4, Stage, WORD, WORDS4, lobes_of};
+use super::formats::{FLOATS4, WORD, WORDS4};
 use super::kept::{Chunk, Kept};
 use super::moved::{AgainList, Moved};
 use super::options::ParticlesOptions;
 use super::place::Placed;
+use super::stage::Stage;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
-use crate::shaders::particles::{ArrivalsAgain, ArrivalsAgainPush, Links, LinksPush, Strata, StrataPush, TouchedLinks, TouchedLinksPush};
+use crate::shaders::groups::Lobes;
+use crate::shaders::particles::{
+    ArrivalsAgain, ArrivalsAgainPush, Links, LinksPush, Strata, StrataPush, TouchedLinks, TouchedLinksPush,
+};
+
+/// Those that mirrors and glass have.
+pub(super) fn lobes_of(scene: &TracedScene) -> Lobes {
+    let facts = &scene.facts;
+    Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) }
+}
 
 /// Invocations that look at the links of one particle, as in glsl/particles/touched_links.comp.
 const SHARES: u32 = 8;
@@ -97,34 +107,35 @@ fn touched_links(
     let emits = scene.emissive_count > 0;
     let brings = emits || (kept.sky_shines && scene.facts.specular);
     let link_count = count * gather_side * gather_side;
-    let again = AgainList::declare(graph, ("link", number), room, link_count, |graph, AgainList { head, list }, capacity| {
-        for (lights, name) in [(0, "touched"), (1, "touched-lights")].into_iter().take(1 + usize::from(brings)) {
-            let pass = TouchedLinks {
-                particles: placed.group.clone(),
-                lobes: lobes_of(scene),
-                moved_triangles: moved.triangles.texels(WORD),
-                boxes: moved.boxes.texels(FLOATS4),
-                touched: moved.touched.texels(WORD),
-                links: links.texels(WORDS4),
-                strata: strata.texels(FLOATS4),
-                states: states.read_write(),
-                head: head.read_write(),
-                again: if lights == 0 { list.start() } else { list.modify() },
-                push: TouchedLinksPush {
-                    first,
-                    count,
-                    gather_side,
-                    scatter_side,
-                    before_count: moved.before_count,
-                    box_count: moved.box_count,
-                    capacity,
-                    lights,
-                },
-            };
-            let pass = graph.pass(&format!("diffuse/particles/link/{name}.{number}"), pass).unordered();
-            pass.threads([SHARES * count, 1, 1]);
-        }
-    });
+    let again =
+        AgainList::declare(graph, ("link", number), room, link_count, |graph, AgainList { head, list }, capacity| {
+            for (lights, name) in [(0, "touched"), (1, "touched-lights")].into_iter().take(1 + usize::from(brings)) {
+                let pass = TouchedLinks {
+                    particles: placed.group.clone(),
+                    lobes: lobes_of(scene),
+                    moved_triangles: moved.triangles.texels(WORD),
+                    boxes: moved.boxes.texels(FLOATS4),
+                    touched: moved.touched.texels(WORD),
+                    links: links.texels(WORDS4),
+                    strata: strata.texels(FLOATS4),
+                    states: states.read_write(),
+                    head: head.read_write(),
+                    again: if lights == 0 { list.start() } else { list.modify() },
+                    push: TouchedLinksPush {
+                        first,
+                        count,
+                        gather_side,
+                        scatter_side,
+                        before_count: moved.before_count,
+                        box_count: moved.box_count,
+                        capacity,
+                        lights,
+                    },
+                };
+                let pass = graph.pass(&format!("diffuse/particles/link/{name}.{number}"), pass).unordered();
+                pass.threads([SHARES * count, 1, 1]);
+            }
+        });
     let pass = ArrivalsAgain {
         has_emitters: u32::from(emits),
         head: again.head.texels(WORD),

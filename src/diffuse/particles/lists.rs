@@ -1,6 +1,7 @@
 //! Lists of the particles by which irradiance is read around each.
 
-use super::geometry::{Stage, WORD};
+use super::formats::WORD;
+use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::TexelBuffer;
 use crate::shaders::particles::{List, ListPush};

@@ -1,8 +1,9 @@
 //! What particles stand for: areas and albedos.
 
-use super::geometry::{FLOAT, Stage, WORD, WORDS4};
+use super::formats::{FLOAT, WORD, WORDS4};
 use super::kept::POINTS;
 use super::moved::{AgainList, Moved};
+use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::particles::{Catch, CatchPush, Matter, MatterPush, TouchedPoints, TouchedPointsPush};

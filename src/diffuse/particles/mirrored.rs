@@ -1,7 +1,8 @@
 //! The light of particles at points that mirrors and glass show: their particles are marked with those of the picture, so that they gather too, and each point
 //! reads the list of its own.
 
-use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use super::formats::{FLOATS4, WORD};
+use super::geometry::ParticleSpace;
 use crate::frame::mirrored::{MirroredLight, MirroredList, MirroredPoints};
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;

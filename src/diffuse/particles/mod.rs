@@ -6,21 +6,19 @@
 //! 2. Lighting stage (`lighting.rs`): emission, scattering. Stands while the camera alone moves.
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
 
+mod formats;
 mod geometry;
 mod kept;
-#[cfg(test)]
-mod lamp_tests;
 mod lighting;
 mod links;
 mod lists;
 mod measure;
 mod mirrored;
 mod moved;
-#[cfg(test)]
-mod moving_tests;
 pub(crate) mod options;
 mod place;
 mod shading;
+mod stage;
 #[cfg(test)]
 mod tests;
 

@@ -2,7 +2,7 @@
 //! Everything else stands. Numbers of particles, and the directions of links, do not depend on where things are, so that the same comes of it as of the whole
 //! work, up to links whose particle lies farther from where they end than two spacings.
 
-use super::geometry::{FLOATS4, WORD};
+use super::formats::{FLOATS4, WORD};
 use super::place::Placed;
 use crate::frame::rays::Motion;
 use crate::graph::bindings::{BufferRef, TexelBuffer};

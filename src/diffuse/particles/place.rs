@@ -1,7 +1,7 @@
 //! Particles on the surfaces, numbered as they lie on the triangles, and the grid that finds them. All of them are placed anew whenever geometry changes: that
 //! takes a hundredth of the time of their links.
 
-use super::geometry::{FLOAT, WORD, WORDS4};
+use super::formats::{FLOAT, WORD, WORDS4};
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;

@@ -2,7 +2,8 @@
 
 use ash::vk;
 
-use super::geometry::{FLOATS4, ParticleSpace, WORD};
+use super::formats::{FLOATS4, WORD};
+use super::geometry::ParticleSpace;
 use super::mirrored;
 use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::{BufferRef, ImageRef};

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::options::ParticlesOptions;
+use super::super::options::ParticlesOptions;
 use crate::gpu_tests::scenes::{box_faces, builtin, floor, lambert, place, request, view};
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
@@ -92,7 +92,9 @@ fn blocks_trace_what_they_cross() {
     open.set_sky([1.0, 1.5, 2.0]);
     let maze_blocks = [DVec3::new(-3.0, 0.3, 0.75), DVec3::new(0.75, 0.3, -2.25)].map(|at| add_block(&mut maze, at));
     let camera = maze.camera_view(None).expect("its camera");
-    moves(&mut maze, &camera, (0.05, 1e-3), |scene, _| maze_blocks.iter().for_each(|block| shift_and_turn(scene, *block)));
+    moves(&mut maze, &camera, (0.05, 1e-3), |scene, _| {
+        maze_blocks.iter().for_each(|block| shift_and_turn(scene, *block))
+    });
     for (scene, at, share) in [
         (&mut panel, DVec3::new(0.3, 1.2, 0.2), 0.5),
         (&mut ring, DVec3::new(0.6, 0.4, 0.6), 0.5),

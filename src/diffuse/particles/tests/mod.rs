@@ -1,5 +1,8 @@
 //! Particles against closed forms, against paths, and what stands when something moves.
 
+mod lamps;
+mod moving;
+
 use glam::DVec3;
 
 use super::geometry::ParticleSpace;
@@ -13,11 +16,11 @@ use crate::method::{Options, Preset};
 use crate::renderer::{Frame, FrameRequest, PassTiming, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, LightKind, Material, Scene};
 
-pub(super) fn options(count: u32, bounces: u32) -> ParticlesOptions {
+fn options(count: u32, bounces: u32) -> ParticlesOptions {
     ParticlesOptions { count, bounces: Some(bounces), gather: 8, ..ParticlesOptions::preset(Preset::Default) }
 }
 
-pub(super) fn settings(options: ParticlesOptions) -> Settings {
+fn settings(options: ParticlesOptions) -> Settings {
     Settings { particles: options, ..Settings::new(Technique::Particles, Preset::Default) }
 }
 
@@ -32,7 +35,7 @@ pub(super) struct Stages {
     passes: Vec<PassTiming>,
 }
 
-pub(super) fn stages(session: &Session, scene: &Scene, options: &ParticlesOptions) -> Stages {
+fn stages(session: &Session, scene: &Scene, options: &ParticlesOptions) -> Stages {
     let mut store = session.store();
     let traced = TracedScene::new(session.context.shared_device(), scene).expect("the scene fits the device");
     let mut graph = Graph::new(&mut store);
@@ -116,12 +119,7 @@ fn the_walls_get_what_a_light_sends_out_and_pass_on_their_albedo_of_it() {
 }
 
 /// A small picture's slot `diffuse`: the mean, and the relative error of blocks of 8×8 pixels.
-pub(super) fn against_paths(
-    session: &Session,
-    scene: &Scene,
-    camera: CameraView,
-    options: ParticlesOptions,
-) -> (f64, f64) {
+fn against_paths(session: &Session, scene: &Scene, camera: CameraView, options: ParticlesOptions) -> (f64, f64) {
     let asked = request([64, 48], camera, &[Slot::Diffuse]);
     let mut path = Settings::new(Technique::Path, Preset::Default);
     (path.path.spp, path.path.bounces) = (96, options.bounces.map(|bounces| bounces + 1));

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::options::ParticlesOptions;
-use super::tests::{against_paths, options, settings, stages};
+use super::super::options::ParticlesOptions;
+use super::{against_paths, options, settings, stages};
 use crate::gpu_tests::scenes::{add_light, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::Slot;

@@ -1,0 +1,8 @@
+//! Formats in which passes read buffers of particles.
+
+use ash::vk;
+
+pub(super) const WORD: vk::Format = vk::Format::R32_UINT;
+pub(super) const WORDS4: vk::Format = vk::Format::R32G32B32A32_UINT;
+pub(super) const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
+pub(super) const FLOATS4: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
