@@ -6,6 +6,9 @@
 // The irradiance of indirect light at one particle that is used, W/m² (Chang et al. 4.3.1): its links are spread by the cosine, so
 //
 //   E = ∫ L cosθ dω ≈ π/N Σ_k L(end of link k)
+//
+// Interleaved, it takes a quarter of its links, its neighbours in space the others: who reads their mean (irradiance.glsl) has all (Keller & Heidrich 2001,
+// with particles in place of pixels).
 
 layout(local_size_x = 64) in;
 
@@ -19,6 +22,7 @@ layout(push_constant, scalar) uniform Push {
     uint first;       // particle of the chunk
     uint count;
     uint link_count;
+    uint parts;       // of the links, one of which is taken: 1 or 4
 } push;
 
 void main() {
@@ -26,12 +30,14 @@ void main() {
     if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
         return;
     }
+    uint taken = push.link_count / push.parts;
+    uint begin = own * push.link_count + (push.first + own) % push.parts * taken;
     vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
-        uint end = texelFetch(links, int(own * push.link_count + i)).x;
+    [[dont_unroll]] for (uint i = 0u; i < taken; ++i) {
+        uint end = texelFetch(links, int(begin + i)).x;
         if (ends_on_particle(end)) {
             sum += texelFetch(radiance, int(particle_of_link(end))).rgb;
         }
     }
-    irradiance[push.first + own] = vec4(sum * (PI / float(push.link_count)), texelFetch(matter, int(push.first + own)).w);
+    irradiance[push.first + own] = vec4(sum * (PI / float(taken)), texelFetch(matter, int(push.first + own)).w);
 }

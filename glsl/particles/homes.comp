@@ -7,9 +7,8 @@
 #include "lib/bvh.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
-#include "particles/home.glsl"
 
-// The particle that stands for the surface at one pixel, by the rule of links; it is marked as used.
+// The particle that stands for the surface at one pixel (seen_home.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -18,8 +17,7 @@ layout(set = 0, binding = 1) buffer Marks { uint marks[]; };
 
 layout(push_constant, scalar) uniform Push { vec3 shift; } push;
 
-// Cosine.
-const float EDGE_ON = 0.02;
+#include "particles/seen_home.glsl"
 
 void main() {
     ivec2 pixel = pixel_of_invocation();
@@ -34,23 +32,8 @@ void main() {
         vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         if (max3(indirect_diffuse_albedo(point)) > 0.0) {
-            vec3 normal = point.geometric_normal;
-            vec3 position = position_rs + push.shift;
-            vec3 to_eye = direction_to_eye(camera, position_rs);
-            vec3 from = lifted(position, normal, to_eye, 3e38, spacing_of_particles());
-            home = home_of(position, normal, from);
-            // Edge-on, rounding decides which side a pixel sees.
-            if (home == NO_PARTICLE && dot(to_eye, normal) < EDGE_ON) {
-                home = home_of(position, -normal, from);
-            }
-            // A thing smaller than the spacing, on which no particle came to lie, gets the light of what is around.
-            if (home == NO_PARTICLE) {
-                home = home_among(position, normal, from, NOT_OPPOSITE, false);
-            }
+            home = seen_home(position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs), 3e38);
         }
-    }
-    if (home != NO_PARTICLE) {
-        atomicOr(marks[home], 1u);
     }
     imageStore(homes, pixel, uvec4(home, 0u, 0u, 0u));
 }

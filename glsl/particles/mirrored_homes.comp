@@ -6,14 +6,15 @@
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "lib/mirrored.glsl"
-#include "particles/home.glsl"
 
-// The particle that stands for one point that mirrors show, by the rule of pixels (homes.comp); it is marked as used.
+// The particle that stands for one point that mirrors show (seen_home.glsl).
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) writeonly buffer Homes { uint homes[]; };
 layout(set = 0, binding = 1) buffer Marks { uint marks[]; };
+
+#include "particles/seen_home.glsl"
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -24,14 +25,7 @@ void main() {
     Surface point = mirrored.surface;
     uint home = NO_PARTICLE;
     if (max3(indirect_diffuse_albedo(point)) > 0.0) {
-        vec3 from = lifted(point.position_rs, point.geometric_normal, mirrored.to_viewer, mirrored.ray_length, spacing_of_particles());
-        home = home_of(point.position_rs, point.geometric_normal, from);
-        if (home == NO_PARTICLE) {
-            home = home_among(point.position_rs, point.geometric_normal, from, NOT_OPPOSITE, false);
-        }
-    }
-    if (home != NO_PARTICLE) {
-        atomicOr(marks[home], 1u);
+        home = seen_home(point.position_rs, point.geometric_normal, mirrored.to_viewer, mirrored.ray_length);
     }
     homes[index] = home;
 }

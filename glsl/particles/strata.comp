@@ -18,7 +18,7 @@ void main() {
     if (link >= push.side * push.side) {
         return;
     }
-    vec2 low = vec2(link % push.side, link / push.side);
+    vec2 low = vec2(stratum_of_link(link, push.side));
     vec3 axis = cosine_direction((low + 0.5) / float(push.side));
     float least = 1.0;
     for (uint corner = 0u; corner < 4u; ++corner) {

@@ -3,8 +3,8 @@
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "lib/vpl.glsl"
-#include "vpl/region_planes.glsl"
-#include "vpl/regions.glsl"
+#include "regions/planes.glsl"
+#include "regions/regions.glsl"
 
 // Irradiance E [W/m²] of two valid regions, neighbours on their list: the sum over all VPLs at the regions' receivers (vpl/gather.glsl). The
 // alpha of what it writes is the receiver's normal, packed, which is above 0.

@@ -2,8 +2,8 @@
 #include "lib/prelude.glsl"
 #include "lib/surface_packing.glsl"
 #include "lib/vpl.glsl"
-#include "vpl/region_planes.glsl"
-#include "vpl/regions.glsl"
+#include "regions/planes.glsl"
+#include "regions/regions.glsl"
 
 // Irradiance E [W/m²] of one region whose stencil is marked: the sum over all VPLs at the region's receiver (vpl/gather.glsl). The alpha of
 // what it writes is the receiver's normal, packed, which is above 0. It counts itself.

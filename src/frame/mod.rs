@@ -19,6 +19,7 @@ pub(crate) mod octahedral;
 pub(crate) mod offers;
 mod plane_depth;
 pub(crate) mod rays;
+pub(crate) mod regions;
 pub(crate) mod scene_data;
 pub(crate) mod textures;
 pub(crate) mod tonemap;

@@ -6,11 +6,8 @@ use ash::vk;
 use super::probe::{Probe, probe, slot};
 use super::scenes::{builtin, request, vpl_settings};
 use super::session::Session;
-use crate::diffuse::vpl::{
-    interpolate::interpolate,
-    pyramid::{level_count, pyramid},
-    regions::flattened_size,
-};
+use crate::diffuse::vpl::rule_of;
+use crate::frame::regions::{flattened_size, interpolate, level_count, pyramid};
 use crate::frame::twins;
 use crate::graph::ClearColor;
 use crate::renderer::{ColorImage, Settings, Slot};
@@ -53,7 +50,7 @@ fn listed(session: &Session, name: &str) -> (Vec<[u32; 2]>, Vec<bool>) {
     (list[4..4 + count].iter().map(|texel| [texel & 0xFFFF, texel >> 16]).collect(), takes.collect())
 }
 
-/// Level and cell of a texel of the flattened image (glsl/vpl/regions.glsl).
+/// Level and cell of a texel of the flattened image (glsl/regions/regions.glsl).
 fn region_of(texel: [u32; 2]) -> (u32, [u32; 2]) {
     let side_column = SIZE[0].next_multiple_of(4);
     if texel[0] < side_column {
@@ -148,12 +145,13 @@ fn constant_irradiance_stays_constant() {
         let buffer = &declared.gbuffer;
         let levels = level_count(SIZE, settings.vpl.levels);
         assert_eq!(levels, 4);
-        let pyramid = pyramid(graph, buffer, &settings.vpl, levels, None);
+        let rule = rule_of(&settings.vpl);
+        let pyramid = pyramid(graph, buffer, &rule, levels, None);
         let flattened = graph.image("flattened", vk::Format::R32G32B32A32_SFLOAT, flattened_size(SIZE));
         let [red, green, blue] = irradiance;
         graph.clear_image("test/irradiance", flattened, ClearColor::Float([red, green, blue, alpha]));
         let radiance = graph.image("radiance", vk::Format::R32G32B32A32_SFLOAT, SIZE);
-        interpolate(graph, buffer, &settings.vpl, &pyramid, flattened, radiance);
+        interpolate(graph, buffer, &rule, &pyramid, flattened, radiance);
         vec![graph.read_back(buffer.depth), graph.read_back(buffer.surface), graph.read_back(radiance)]
     });
     let mut surfaces = 0;

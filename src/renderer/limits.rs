@@ -23,7 +23,7 @@ const IMAGES: &[(&str, vk::Format, vk::FormatFeatureFlags)] = &[
     ("light_views/*", vk::Format::D32_SFLOAT, DEPTH),
     ("photons/specular*", vk::Format::D32_SFLOAT, DEPTH),
     ("photon_lists/peel*", vk::Format::D32_SFLOAT, DEPTH),
-    ("vpl/mark_regions", vk::Format::S8_UINT, DEPTH),
+    ("regions/mark", vk::Format::S8_UINT, DEPTH),
     ("vpl/gather_stencil", vk::Format::S8_UINT, DEPTH),
     ("vpl/gather_stencil", vk::Format::R32G32B32A32_SFLOAT, BLEND),
 ];

@@ -17,6 +17,7 @@ mod mirrored;
 mod moved;
 pub(crate) mod options;
 mod place;
+mod receivers;
 mod shading;
 mod stage;
 #[cfg(test)]
@@ -52,7 +53,7 @@ impl Method for Particles {
     }
 
     fn shaders(_: &ParticlesOptions, _: bool) -> Vec<&'static str> {
-        vec!["particles/*", "buckets/*"]
+        vec!["particles/*", "buckets/*", "regions/first", "regions/larger", "regions/interpolate", "regions/resolve"]
     }
 
     fn skip(_: &ParticlesOptions, facts: &Facts) -> Option<&'static str> {
@@ -69,7 +70,7 @@ impl Method for Particles {
         let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo()));
         let space = ParticleSpace::declare(cx.graph, scene, options);
         let radiance = lighting::light(cx.graph, scene, &space, options, steps).radiance;
-        Ok(Some(shading::shade(cx, &space, shift, options.gather * options.gather, radiance)))
+        Ok(Some(shading::shade(cx, &space, shift, options, radiance)))
     }
 }
 

@@ -1,9 +1,19 @@
 //! Options of `particles`.
 
-use crate::method::{OptionKind, options};
+use crate::method::{OptionKind, choices, options};
 
 /// Scattering steps at most.
 pub(crate) const MOST_BOUNCES: u32 = 64;
+
+choices! {
+    /// Where the picture reads the particles' irradiance.
+    ParticlesReceivers {
+        /// At regions of several sizes, flat ones, with interpolation between them.
+        Regions = "regions",
+        /// At every pixel.
+        Pixels = "pixels",
+    }
+}
 
 options! {
     /// Options of the `particles` diffuse method (Chang, Park & Ihm).
@@ -16,6 +26,10 @@ options! {
     scatter: u32 = 4; OptionKind::OneOf(&[1, 2, 4, 8]), "links", "quadratic";
     /// Links a side of the square of directions that irradiance is gathered by.
     gather: u32 = 16, draft = 8; OptionKind::OneOf(&[8, 16, 24, 32]), "links", "quadratic";
+    /// Parts of the links that particles are gathered by: 4: each takes a quarter, its neighbours the others.
+    interleave: u32 = 1; OptionKind::OneOf(&[1, 4]), "parts", "falls";
+    /// Where the picture reads the particles' irradiance.
+    receivers: ParticlesReceivers = ParticlesReceivers::Regions; OptionKind::Choice(ParticlesReceivers::NAMES), "", "";
     /// Photons from lights to mirrors and glass, and on to the first diffuse surface.
     photons: u32 = 200_000, draft = 40_000, high = 1_000_000; OptionKind::Integer(0, 8_000_000), "photons", "linear";
     /// Points of emissive surfaces that each particle sends a ray to.

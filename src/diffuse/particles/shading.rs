@@ -1,39 +1,30 @@
-//! The last stage: which particles the picture shows, their irradiance, and the pixels. It follows the camera.
-
-use ash::vk;
+//! The last stage: which particles the picture shows, their irradiance, and the picture. It follows the camera.
 
 use super::formats::{FLOATS4, WORD};
 use super::geometry::ParticleSpace;
 use super::mirrored;
+use super::options::ParticlesOptions;
+use super::receivers::Receivers;
 use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::FrameCx;
-use crate::shaders::particles::{Gather, GatherPush, Homes, HomesPush, Shade, ShadePush, Used, UsedPush};
+use crate::shaders::particles::{Gather, GatherPush, Used, UsedPush};
 
 /// Declares the stage; returns the slot.
 pub(super) fn shade(
     cx: &mut FrameCx<'_, '_>,
     space: &ParticleSpace,
     shift: [f32; 3],
-    link_count: u32,
+    options: &ParticlesOptions,
     radiance: BufferRef<[f32; 4]>,
 ) -> ImageRef {
     let surface = cx.frame.surface;
     let (offers, points) = (&cx.frame.offers, cx.frame.offers.get::<MirroredPoints>());
     let graph = &mut *cx.graph;
     let particle_count = space.count;
-    let homes = graph.image("particles.homes", vk::Format::R32_UINT, surface.size);
     let marks = graph.buffer::<u32>("particles.marks", particle_count as usize);
     graph.fill_buffer("diffuse/particles/find/clear", marks, 0);
-    let pass = Homes {
-        scene_rays: space.rays.clone(),
-        particles: space.group.clone(),
-        surface: surface.group.clone(),
-        homes: homes.write(),
-        marks: marks.read_write(),
-        push: HomesPush { shift },
-    };
-    graph.pass("diffuse/particles/find/homes", pass).pixels(surface.size);
+    let receivers = Receivers::find(graph, surface, space, shift, options, marks);
     let mirrored_homes = points.as_ref().map(|points| mirrored::mark(graph, space, points, marks));
     let used = graph.buffer::<u32>("particles.used", particle_count as usize);
     let counts = graph.buffer::<u32>("particles.used_counts", 2);
@@ -58,24 +49,17 @@ pub(super) fn shade(
             radiance: radiance.texels(FLOATS4),
             matter: space.matter.texels(FLOATS4),
             irradiance: if number == 0 { irradiance.start_then_read() } else { irradiance.read_write() },
-            push: GatherPush { first: chunk.first, count: chunk.count, link_count },
+            push: GatherPush {
+                first: chunk.first,
+                count: chunk.count,
+                link_count: options.gather * options.gather,
+                parts: options.interleave,
+            },
         };
         graph.pass(&format!("diffuse/particles/gather.{number}"), pass).threads([chunk.count, 1, 1]);
     }
     if let (Some(points), Some(homes)) = (&points, &mirrored_homes) {
         offers.put(mirrored::light(graph, space, points, homes, irradiance));
     }
-    let diffuse = graph.image("particles.diffuse", vk::Format::R32G32B32A32_SFLOAT, surface.size);
-    let pass = Shade {
-        particles: space.group.clone(),
-        surface: surface.group.clone(),
-        homes: homes.sampled(),
-        list_lengths: space.list_lengths.texels(WORD),
-        lists: space.lists.texels(WORD),
-        irradiance: irradiance.texels(FLOATS4),
-        diffuse: diffuse.write(),
-        push: ShadePush { shift },
-    };
-    graph.pass("diffuse/particles/shade", pass).pixels(surface.size);
-    diffuse
+    receivers.light(graph, surface, space, shift, irradiance)
 }

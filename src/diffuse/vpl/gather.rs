@@ -5,10 +5,9 @@
 
 use ash::vk;
 
-use super::pyramid::{Pyramid, signed};
-use super::regions::{VALID, flattened_size};
 use super::sample::vpl_count;
 use super::visibility::{TRACED, Visibility};
+use crate::frame::regions::{Pyramid, VALID, flattened_size, signed};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
 use crate::method::FrameCx;

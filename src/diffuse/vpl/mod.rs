@@ -1,13 +1,10 @@
 //! `vpl`: diffuse light from virtual point lights, gathered at regions of several sizes (Quyen 2014, section 3.2).
 
 mod gather;
-pub(crate) mod interpolate;
 mod ism;
 mod mirrored;
 pub(crate) mod options;
 mod paths;
-pub(crate) mod pyramid;
-pub(crate) mod regions;
 mod sample;
 mod visibility;
 
@@ -16,6 +13,7 @@ use ash::vk;
 use self::options::{VplOptions, VplShading, VplVisibility};
 use self::visibility::Visibility;
 use crate::frame::mirrored::MirroredPoints;
+use crate::frame::regions::{self, RegionRule};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -48,7 +46,7 @@ impl Method for Vpl {
         if options.visibility == VplVisibility::Ism {
             shaders.push("ism/*");
         }
-        let regions = ["vpl/first_regions", "vpl/larger_regions", "vpl/interpolate", "vpl/resolve"];
+        let regions = ["regions/first", "regions/larger", "regions/interpolate", "regions/resolve"];
         match (options.shading, software) {
             (VplShading::Pixels, _) => {}
             (VplShading::Compute, _) | (VplShading::Auto, true) => {
@@ -57,7 +55,7 @@ impl Method for Vpl {
             }
             _ => {
                 shaders.extend(regions);
-                shaders.extend(["vpl/mark_regions", "vpl/gather_stencil"]);
+                shaders.extend(["regions/mark", "vpl/gather_stencil"]);
             }
         }
         shaders
@@ -99,6 +97,11 @@ pub(crate) struct Made {
     pub(crate) list: Option<BufferRef<u32>>,
 }
 
+pub(crate) fn rule_of(options: &VplOptions) -> RegionRule {
+    let (depth_threshold, normal_threshold) = (options.depth_threshold as f32, options.normal_threshold as f32);
+    RegionRule { piece: "diffuse/vpl", depth_threshold, normal_threshold }
+}
+
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
     let buffer = cx.frame.surface;
@@ -112,7 +115,7 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
         cx.frame.offers.put(light);
     }
     let mut made = Made { diffuse, vpls, invocations: None, list: None };
-    let level_count = pyramid::level_count(buffer.size, options.levels);
+    let level_count = regions::level_count(buffer.size, options.levels);
     let shading = match options.shading {
         // An image so wide that its levels do not fit beside each other is gathered pixel by pixel.
         _ if level_count == 1 || regions::flattened_size(buffer.size)[0] > cx.graph.longest_side() => {
@@ -126,17 +129,18 @@ pub(crate) fn vpl(cx: &mut FrameCx<'_, '_>, options: &VplOptions) -> Made {
         gather::gather_pixels(cx, vpls, &visibility, diffuse);
         return made;
     }
+    let rule = rule_of(options);
     let listed = (shading == VplShading::Compute).then_some(gather::REGIONS_PER_GROUP);
-    let pyramid = pyramid::pyramid(cx.graph, buffer, options, level_count, listed);
+    let pyramid = regions::pyramid(cx.graph, buffer, &rule, level_count, listed);
     made.list = pyramid.list;
     let irradiance = if let Some(list) = pyramid.list {
         gather::gather_list(cx, vpls, &visibility, &pyramid, list)
     } else {
-        let stencil = regions::mark(cx, &pyramid);
+        let stencil = regions::mark(cx.graph, buffer, &rule, &pyramid);
         let (irradiance, invocations) = gather::gather_stencil(cx, vpls, &visibility, &pyramid, stencil);
         made.invocations = Some(invocations);
         irradiance
     };
-    interpolate::interpolate(cx.graph, buffer, options, &pyramid, irradiance, diffuse);
+    regions::interpolate(cx.graph, buffer, &rule, &pyramid, irradiance, diffuse);
     made
 }

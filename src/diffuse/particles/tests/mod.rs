@@ -2,6 +2,7 @@
 
 mod lamps;
 mod moving;
+mod receivers;
 
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "groups/surface.glsl"
-#include "vpl/regions.glsl"
+#include "regions/regions.glsl"
 
 // A texel of the flattened image marks the stencil if its region is valid (alg. 3.1 of Quyen 2014): the others are discarded, so that no
 // export of stencil values is needed.

@@ -1,7 +1,7 @@
 // Regions of several sizes (Quyen 2014, section 3.2.2.2) and where things about them lie.
 //
 // Level l cuts the image into squares of 2^l pixels; those that the image holds in full are its regions, floor(W/2^l) × floor(H/2^l) of them.
-// What is known of a region of level 1 and above is a texel of mip l − 1 of two images, made by region_planes.glsl:
+// What is known of a region of level 1 and above is a texel of mip l − 1 of two images, made by regions/planes.glsl:
 //
 //   planes   rgba32f    depth d at the region's centre and its change per pixel in x and y, of the plane of one of its pixels; how far its
 //                       pixels' depths are from that plane, at most. All 0 where the region is not flat.

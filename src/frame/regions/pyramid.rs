@@ -2,20 +2,20 @@
 
 use ash::vk;
 
-use super::options::VplOptions;
+use super::RegionRule;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
-use crate::shaders::vpl::{FirstRegions, FirstRegionsPush, LargerRegions, LargerRegionsPush};
+use crate::shaders::regions::{First, FirstPush, Larger, LargerPush};
 use crate::vulkan::ImageInfo;
 
-/// The pyramid: mip l − 1 is level l of the regions (glsl/vpl/regions.glsl).
+/// The pyramid: mip l − 1 is level l of the regions (glsl/regions/regions.glsl).
 pub(crate) struct Pyramid {
     pub(crate) planes: ImageRef,
     pub(crate) normals: ImageRef,
     /// Sizes of regions, pixels included; at least 2.
     pub(crate) level_count: u32,
-    /// The valid regions (glsl/vpl/list.glsl), if they are asked for.
+    /// The valid regions (glsl/regions/list.glsl), if they are asked for.
     pub(crate) list: Option<BufferRef<u32>>,
 }
 
@@ -36,13 +36,12 @@ pub(crate) fn level_count(size: [u32; 2], wanted: u32) -> u32 {
 pub(crate) fn pyramid(
     graph: &mut Graph<'_>,
     buffer: &GBuffer,
-    options: &VplOptions,
+    rule: &RegionRule,
     level_count: u32,
     group_regions: Option<u32>,
 ) -> Pyramid {
     let size = buffer.size;
-    let thresholds = (options.depth_threshold as f32, options.normal_threshold as f32);
-    let (depth_threshold, normal_threshold) = thresholds;
+    let RegionRule { depth_threshold, normal_threshold, .. } = *rule;
     let info = |format| ImageInfo {
         format,
         extent: [size[0] / 2, size[1] / 2, 1],
@@ -50,30 +49,30 @@ pub(crate) fn pyramid(
         layers: 1,
         volume: false,
     };
-    let planes = graph.image_with("vpl.planes", info(vk::Format::R32G32B32A32_SFLOAT));
-    let normals = graph.image_with("vpl.normals", info(vk::Format::R32G32B32A32_UINT));
+    let planes = graph.image_with(&rule.resource("planes"), info(vk::Format::R32G32B32A32_SFLOAT));
+    let normals = graph.image_with(&rule.resource("normals"), info(vk::Format::R32G32B32A32_UINT));
     // Every region holds a pixel of its own.
     let capacity = if group_regions.is_some() { size[0] as usize * size[1] as usize } else { 0 };
-    let list = graph.buffer::<u32>("vpl.list", LIST_HEADER + capacity);
-    graph.fill_buffer("diffuse/vpl/regions/clear-list", list, 0);
+    let list = graph.buffer::<u32>(&rule.resource("regions"), LIST_HEADER + capacity);
+    graph.fill_buffer(&rule.pass("regions/clear-list"), list, 0);
     let (lists, group_regions) = (u32::from(group_regions.is_some()), group_regions.unwrap_or(1));
-    let pass = FirstRegions {
+    let pass = First {
         surface: buffer.group.clone(),
         planes: planes.mip(0).write(),
         normals: normals.mip(0).write(),
         list: list.read_write(),
         lists,
         group_regions,
-        push: FirstRegionsPush {
+        push: FirstPush {
             size: signed(size),
             level_count: level_count.cast_signed(),
             depth_threshold,
             normal_threshold,
         },
     };
-    graph.pass("diffuse/vpl/regions/squares-2", pass).unordered().pixels(size.map(|side| side.div_ceil(2)));
+    graph.pass(&rule.pass("regions/squares-2"), pass).unordered().pixels(size.map(|side| side.div_ceil(2)));
     for level in 2..level_count {
-        let pass = LargerRegions {
+        let pass = Larger {
             surface: buffer.group.clone(),
             quarter_planes: planes.mip(level - 2).sampled(),
             quarter_normals: normals.mip(level - 2).sampled(),
@@ -82,7 +81,7 @@ pub(crate) fn pyramid(
             list: list.read_write(),
             lists,
             group_regions,
-            push: LargerRegionsPush {
+            push: LargerPush {
                 size: signed(size),
                 level: level.cast_signed(),
                 level_count: level_count.cast_signed(),
@@ -92,7 +91,7 @@ pub(crate) fn pyramid(
         };
         // Those that the image cuts off too: their quarters may be valid.
         let regions = size.map(|side| (side >> (level - 1)).div_ceil(2));
-        graph.pass(&format!("diffuse/vpl/regions/squares-{}", 1 << level), pass).unordered().pixels(regions);
+        graph.pass(&rule.pass(&format!("regions/squares-{}", 1 << level)), pass).unordered().pixels(regions);
     }
     Pyramid { planes, normals, level_count, list: (lists == 1).then_some(list) }
 }

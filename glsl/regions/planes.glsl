@@ -14,7 +14,7 @@
 
 
 struct Square {
-    vec4 plane;        // as in vpl/regions.glsl, at the square's centre; 0: not flat
+    vec4 plane;        // as in regions/regions.glsl, at the square's centre; 0: not flat
     vec3 low_normal;
     vec3 high_normal;
 };

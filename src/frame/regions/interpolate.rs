@@ -1,23 +1,23 @@
 //! From irradiance at regions to radiance at pixels, coarse to fine.
 
-use super::options::VplOptions;
+use super::RegionRule;
 use super::pyramid::{Pyramid, signed};
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
-use crate::shaders::vpl::{Interpolate, InterpolatePush, Resolve, ResolvePush};
+use crate::shaders::regions::{Interpolate, InterpolatePush, Resolve, ResolvePush};
 
 /// Declares the passes, one a level; `irradiance` is the flattened image.
 pub(crate) fn interpolate(
     graph: &mut Graph<'_>,
     buffer: &GBuffer,
-    options: &VplOptions,
+    rule: &RegionRule,
     pyramid: &Pyramid,
     irradiance: ImageRef,
     diffuse: ImageRef,
 ) {
     let size = buffer.size;
-    let (depth_threshold, normal_threshold) = (options.depth_threshold as f32, options.normal_threshold as f32);
+    let RegionRule { depth_threshold, normal_threshold, .. } = *rule;
     let planes_of_level = |level: u32| pyramid.planes.mip(level - 1).sampled();
     for level in (1..pyramid.level_count - 1).rev() {
         let pass = Interpolate {
@@ -28,7 +28,7 @@ pub(crate) fn interpolate(
             push: InterpolatePush { size: signed(size), level: level.cast_signed(), depth_threshold, normal_threshold },
         };
         let regions = size.map(|side| side >> (level + 1));
-        graph.pass(&format!("diffuse/vpl/interpolate/squares-{}", 1 << level), pass).pixels(regions);
+        graph.pass(&rule.pass(&format!("interpolate/squares-{}", 1 << level)), pass).pixels(regions);
     }
     let pass = Resolve {
         surface: buffer.group.clone(),
@@ -37,5 +37,5 @@ pub(crate) fn interpolate(
         diffuse: diffuse.write(),
         push: ResolvePush { depth_threshold, normal_threshold },
     };
-    graph.pass("diffuse/vpl/interpolate/resolve", pass).pixels(size.map(|side| side.div_ceil(2)));
+    graph.pass(&rule.pass("interpolate/resolve"), pass).pixels(size.map(|side| side.div_ceil(2)));
 }

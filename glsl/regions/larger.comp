@@ -4,11 +4,11 @@
 #include "lib/pixels.glsl"
 #include "lib/scene.glsl"
 #include "lib/vectors.glsl"
-#include "vpl/region_planes.glsl"
-#include "vpl/regions.glsl"
-#include "vpl/list.glsl"
+#include "regions/planes.glsl"
+#include "regions/regions.glsl"
+#include "regions/list.glsl"
 
-// The plane and the normals of one region from its four quarters of the level below (vpl/region_planes.glsl).
+// The plane and the normals of one region from its four quarters of the level below (regions/planes.glsl).
 
 layout(local_size_x = 64) in;
 

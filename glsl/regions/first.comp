@@ -3,11 +3,11 @@
 #include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
-#include "vpl/region_planes.glsl"
-#include "vpl/regions.glsl"
-#include "vpl/list.glsl"
+#include "regions/planes.glsl"
+#include "regions/regions.glsl"
+#include "regions/list.glsl"
 
-// The plane and the normals of one region of level 1, from its 2x2 pixels (vpl/region_planes.glsl). A pixel's plane is that of its triangle,
+// The plane and the normals of one region of level 1, from its 2x2 pixels (regions/planes.glsl). A pixel's plane is that of its triangle,
 //
 //   ∂d/∂x = d · n·r_x/(n·r)      r the ray through the pixel, r_x its change per pixel (perspective)
 //   ∂d/∂x = (n·r_x)/(n·f)/range                                                        (orthographic, f forward)

@@ -3,10 +3,10 @@
 #include "groups/surface.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
-#include "vpl/regions.glsl"
+#include "regions/regions.glsl"
 
 // The slot `diffuse` of 2x2 pixels: L = ρ/π · E [W/(m²·sr)], ρ = indirect_diffuse_albedo(). If they are one flat region, E comes from the
-// regions of their size (vpl/upsample.glsl), else it is what was gathered at each pixel.
+// regions of their size (regions/upsample.glsl), else it is what was gathered at each pixel.
 
 layout(local_size_x = 64) in;
 
@@ -27,7 +27,7 @@ float depth_of_square(ivec2 cell) {
     return texelFetch(depth, cell, 0).x;
 }
 
-#include "vpl/upsample.glsl"
+#include "regions/upsample.glsl"
 
 vec3 gathered_at(ivec2 pixel, ivec2 size) {
     return is_inside(pixel, size) ? irradiance_at(pixel).rgb : vec3(0.0);

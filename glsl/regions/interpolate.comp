@@ -4,9 +4,9 @@
 #include "lib/pixels.glsl"
 #include "lib/octahedral.glsl"
 #include "lib/vectors.glsl"
-#include "vpl/regions.glsl"
+#include "regions/regions.glsl"
 
-// Irradiance of the four squares of level l >= 1 that make up one flat region of level l + 1 (vpl/upsample.glsl). No square that is read
+// Irradiance of the four squares of level l >= 1 that make up one flat region of level l + 1 (regions/upsample.glsl). No square that is read
 // on level l is written here: those were gathered, because the region that they make up is not flat.
 
 layout(local_size_x = 64) in;
@@ -30,7 +30,7 @@ float depth_of_square(ivec2 cell) {
     return texelFetch(square_planes, cell, 0).x;
 }
 
-#include "vpl/upsample.glsl"
+#include "regions/upsample.glsl"
 
 void main() {
     ivec2 region = pixel_of_invocation();

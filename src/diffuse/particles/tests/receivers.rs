@@ -1,0 +1,61 @@
+//! Where the picture reads the particles' light, and how many links each reads itself.
+
+use super::super::options::{ParticlesOptions, ParticlesReceivers};
+use super::{count, options, settings};
+use crate::gpu_tests::scenes::{builtin, request};
+use crate::gpu_tests::session::Session;
+use crate::renderer::{Frame, FrameRequest, Slot, Timing};
+
+const SIZE: [u32; 2] = [160, 128];
+/// Of blocks, pixels.
+const BLOCK: usize = 8;
+
+fn frame(session: &Session, options: ParticlesOptions) -> Frame {
+    let scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    let asked = FrameRequest { timing: Timing::Passes, ..request(SIZE, camera, &[Slot::Diffuse]) };
+    session.render(&scene, &settings(options), &asked)
+}
+
+/// The ratio of the means, and the error of pixels and of blocks over the mean.
+fn difference(found: &Frame, expected: &Frame) -> [f64; 3] {
+    let green = |frame: &Frame| frame.slots[&Slot::Diffuse].pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+    let [found, expected]: [Vec<f64>; 2] = [found, expected].map(green);
+    let blocks = |pixels: &[f64]| -> Vec<f64> {
+        let width = SIZE[0] as usize;
+        let columns = width / BLOCK;
+        let mut sums = vec![0.0; columns * (SIZE[1] as usize / BLOCK)];
+        for (index, value) in pixels.iter().enumerate() {
+            sums[index / width / BLOCK * columns + index % width / BLOCK] += value / (BLOCK * BLOCK) as f64;
+        }
+        sums
+    };
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let error = |a: &[f64], b: &[f64]| {
+        let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+        (squares / a.len() as f64).sqrt() / mean(b)
+    };
+    [mean(&found) / mean(&expected), error(&found, &expected), error(&blocks(&found), &blocks(&expected))]
+}
+
+#[test]
+fn regions_show_what_every_pixel_would() {
+    let session = Session::open();
+    let all = frame(&session, ParticlesOptions { receivers: ParticlesReceivers::Pixels, ..options(4000, 3) });
+    let regions = frame(&session, options(4000, 3));
+    let [mean, pixels, blocks] = difference(&regions, &all);
+    assert!((mean - 1.0).abs() < 3e-3 && pixels < 0.03 && blocks < 0.012, "{mean}, pixels {pixels}, blocks {blocks}");
+    let count = count(&regions.timings.passes, "diffuse/particles/find/homes", "regions");
+    assert!((500..6000).contains(&count), "{count} regions of {} pixels", SIZE[0] * SIZE[1]);
+}
+
+#[test]
+fn a_quarter_of_the_links_each_has_all_of_the_light() {
+    let session = Session::open();
+    let many = ParticlesOptions { gather: 16, ..options(4000, 3) };
+    let whole = frame(&session, many.clone());
+    let quarters = frame(&session, ParticlesOptions { interleave: 4, ..many.clone() });
+    let [mean, _, blocks] = difference(&quarters, &whole);
+    assert!((mean - 1.0).abs() < 5e-3, "{mean}");
+    assert!((1e-3..0.04).contains(&blocks), "blocks {blocks}");
+}
