@@ -170,7 +170,7 @@ mod tests {
         let (piece, what) = first_lack(&without_stencil, &vpl("auto"), false).expect("it lacks a stencil");
         assert_eq!(
             (piece, what.as_str()),
-            ("vpl", "vpl/gather_stencil needs images of S8_UINT for DEPTH_STENCIL_ATTACHMENT")
+            ("vpl", "regions/mark needs images of S8_UINT for DEPTH_STENCIL_ATTACHMENT")
         );
 
         let mut without_depth = generous();

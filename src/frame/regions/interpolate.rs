@@ -1,7 +1,7 @@
 //! From irradiance at regions to radiance at pixels, coarse to fine.
 
-use super::RegionRule;
 use super::pyramid::{Pyramid, signed};
+use super::rule::RegionRule;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::RegionRule;
+use super::rule::RegionRule;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};

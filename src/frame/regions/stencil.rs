@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use super::RegionRule;
 use super::pyramid::{Pyramid, signed};
+use super::rule::RegionRule;
 use crate::frame::gbuffer::GBuffer;
 use crate::graph::Graph;
 use crate::graph::bindings::ImageRef;
