@@ -1,7 +1,10 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "lib/color.glsl"
+#include "lib/octahedral.glsl"
 #include "lib/vectors.glsl"
-#include "particles/link.glsl"
+#include "groups/particles.glsl"
+#include "particles/link_direction.glsl"
 
 // The irradiance of indirect light at one particle that is used, W/m² (Chang et al. 4.3.1): its links are spread by the cosine, so
 //
@@ -10,18 +13,27 @@
 // Interleaved, it takes a quarter of its links, its neighbours in space the others: who reads their mean (irradiance.glsl) has all (Keller & Heidrich 2001,
 // with particles in place of pixels).
 
+// Where normal maps turn the surface against its particle, its normal being n, another one n' receives (with c = n·n', directions below the surface being dark)
+//
+//   E(n') ≈ E (1 + c)/2 + T·n'        T = ∫ L ω dω without its part along n ≈ π/N Σ_k L ω_k/cosθ_k
+//
+// which is exact for even light at any c, and for any light to the first order. T·luminance/E's is what is kept.
+
 layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const uint TURNS = 0u;  // 1: T is wanted
 
 layout(set = 0, binding = 0) uniform usamplerBuffer used;
 layout(set = 0, binding = 1) uniform usamplerBuffer links;
 layout(set = 0, binding = 2) uniform samplerBuffer radiance;
 layout(set = 0, binding = 3) uniform samplerBuffer matter;
-layout(set = 0, binding = 4) buffer Irradiance { vec4 irradiance[]; };  // and the area of each, m²
+layout(set = 0, binding = 4) buffer Irradiance { vec4 irradiance[]; };  // and the area of each, m²; behind all of them T/E
 
 layout(push_constant, scalar) uniform Push {
     uint first;       // particle of the chunk
     uint count;
-    uint link_count;
+    uint particle_count;
+    uint gather_side;
     uint parts;       // of the links, one of which is taken: 1 or 4
 } push;
 
@@ -30,14 +42,28 @@ void main() {
     if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
         return;
     }
-    uint taken = push.link_count / push.parts;
-    uint begin = own * push.link_count + (push.first + own) % push.parts * taken;
+    uint link_count = push.gather_side * push.gather_side;
+    uint taken = link_count / push.parts;
+    uint particle = push.first + own;
+    uint begin = particle % push.parts * taken;
     vec3 sum = vec3(0.0);
+    vec2 turn = vec2(0.0);
     [[dont_unroll]] for (uint i = 0u; i < taken; ++i) {
-        uint end = texelFetch(links, int(begin + i)).x;
+        uint end = texelFetch(links, int(own * link_count + begin + i)).x;
         if (ends_on_particle(end)) {
-            sum += texelFetch(radiance, int(particle_of_link(end))).rgb;
+            vec3 found = texelFetch(radiance, int(particle_of_link(end))).rgb;
+            sum += found;
+            if (TURNS != 0u) {
+                vec2 stratum = vec2(stratum_of_link(begin + i, push.gather_side)) + 0.5;
+                vec3 direction = cosine_direction(stratum / float(push.gather_side));
+                turn += luminance(found) * direction.xy / direction.z;
+            }
         }
     }
-    irradiance[push.first + own] = vec4(sum * (PI / float(taken)), texelFetch(matter, int(push.first + own)).w);
+    irradiance[particle] = vec4(sum * (PI / float(taken)), texelFetch(matter, int(particle)).w);
+    if (TURNS != 0u) {
+        vec3 normal = unpack_direction(texelFetch(particle_places, int(particle)).w);
+        vec3 tangential = to_world(frame_around(normal), vec3(turn, 0.0));
+        irradiance[push.particle_count + particle] = vec4(tangential / max(luminance(sum), 1e-30), 0.0);
+    }
 }

@@ -22,6 +22,8 @@ const FINEST: f64 = 0.0025;
 /// What the geometry stage leaves.
 pub(super) struct ParticleSpace {
     pub(super) count: u32,
+    /// 1: normal maps turn surfaces against their particles.
+    pub(super) turns: u32,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
     /// Albedo and area of each.
@@ -60,6 +62,7 @@ impl ParticleSpace {
         let Kept { chunks, scatter_links, arrivals, lists, list_lengths, .. } = kept;
         ParticleSpace {
             count: particle_count,
+            turns: u32::from(scene.facts.normal_mapped),
             rays,
             group,
             matter,

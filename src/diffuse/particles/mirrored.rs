@@ -42,6 +42,7 @@ pub(super) fn light(
     let received = |(number, (list, homes)): (usize, (&MirroredList, &BufferRef<u32>))| {
         let received = graph.buffer::<[f32; 4]>(&format!("particles.mirrored.{number}"), list.points.count());
         let pass = Mirrored {
+            turns: space.turns,
             particles: space.group.clone(),
             mirrored: list.group(),
             homes: homes.texels(WORD),

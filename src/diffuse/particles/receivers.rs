@@ -18,7 +18,7 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const REGIONS_PER_GROUP: u32 = 64;
 /// Sizes of regions at most: of 1, 2, 4, 8 pixels a side.
 const LEVELS: u32 = 4;
-const RULE: RegionRule = RegionRule { piece: "diffuse/particles", depth_threshold: 0.01, normal_threshold: 0.1 };
+const RULE: RegionRule = RegionRule { piece: "diffuse/particles", depth_threshold: 2e-4, normal_threshold: 0.1 };
 
 /// What irradiance is read for, each with the particle that stands for it.
 pub(super) enum Receivers {
@@ -86,6 +86,7 @@ impl Receivers {
         match self {
             Receivers::Pixels(homes) => {
                 let pass = Shade {
+                    turns: space.turns,
                     particles: space.group.clone(),
                     surface: surface.group.clone(),
                     homes: homes.sampled(),
@@ -103,6 +104,7 @@ impl Receivers {
                 if let Some(list) = pyramid.list {
                     let level_count = pyramid.level_count.cast_signed();
                     let pass = RegionLight {
+                        turns: space.turns,
                         particles: space.group.clone(),
                         surface: surface.group.clone(),
                         regions: list.texels(WORD),

@@ -41,9 +41,11 @@ pub(super) fn shade(
     let pass = graph.pass("diffuse/particles/find/used", pass).count("homes", counts, 0).count("particles", counts, 1);
     pass.threads([particle_count, 1, 1]);
 
-    let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", particle_count as usize);
+    let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", ((1 + space.turns) * particle_count) as usize);
     for (number, chunk) in space.chunks.iter().enumerate() {
         let pass = Gather {
+            turns: space.turns,
+            particles: space.group.clone(),
             used: used.texels(WORD),
             links: chunk.links.texels(WORD),
             radiance: radiance.texels(FLOATS4),
@@ -52,7 +54,8 @@ pub(super) fn shade(
             push: GatherPush {
                 first: chunk.first,
                 count: chunk.count,
-                link_count: options.gather * options.gather,
+                particle_count,
+                gather_side: options.gather,
                 parts: options.interleave,
             },
         };

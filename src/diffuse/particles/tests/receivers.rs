@@ -1,10 +1,13 @@
 //! Where the picture reads the particles' light, and how many links each reads itself.
 
+use glam::{DAffine3, DVec3};
+
 use super::super::options::{ParticlesOptions, ParticlesReceivers};
-use super::{count, options, settings};
-use crate::gpu_tests::scenes::{builtin, request};
+use super::{against_paths, count, options, settings};
+use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Slot, Timing};
+use crate::scene::{LightKind, Material, Primitive, Scene, Texture, TextureRef, Wrap};
 
 const SIZE: [u32; 2] = [160, 128];
 /// Of blocks, pixels.
@@ -58,4 +61,45 @@ fn a_quarter_of_the_links_each_has_all_of_the_light() {
     let [mean, _, blocks] = difference(&quarters, &whole);
     assert!((mean - 1.0).abs() < 5e-3, "{mean}");
     assert!((1e-3..0.04).contains(&blocks), "blocks {blocks}");
+}
+
+/// A room whose floor's normals are all turned by 30° towards -x or +x, where a lamp brightens the one wall.
+fn turned_floor(towards: f32) -> Scene {
+    let mut scene = closed_box(1.0, lambert([0.5; 3]));
+    let component = |value: f32| (127.5 + 127.5 * value).round() as u8;
+    let (along, up) = (component(towards * 0.5), component(0.75_f32.sqrt()));
+    let texture = Texture {
+        name: String::new(),
+        width: 1,
+        height: 1,
+        rgba8: vec![along, component(0.0), up, 255],
+        wrap: [Wrap::Repeat; 2],
+        nearest: true,
+        srgb: false,
+    };
+    let normal_texture = Some(TextureRef::new(scene.add_texture(texture).expect("a sound texture")));
+    let material = Material { normal_texture, ..lambert([0.5; 3]) };
+    let material = scene.add_material(material).expect("a sound material");
+    let corners = [[-1.0, -0.9, -1.0], [-1.0, -0.9, 1.0], [1.0, -0.9, 1.0], [1.0, -0.9, -1.0]];
+    let floor = Primitive {
+        normals: Some(vec![[0.0, 1.0, 0.0]; 4]),
+        tangents: Some(vec![[1.0, 0.0, 0.0, 1.0]; 4]),
+        texcoords: [Some(vec![[0.5, 0.5]; 4]), None],
+        ..quad(corners, material)
+    };
+    place(&mut scene, vec![floor], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Point, DVec3::new(-0.7, 0.3, 0.1), DVec3::NEG_Y, [1.0; 3]);
+    scene
+}
+
+/// What a normal map turns to the light wall receives more than what it turns away, as paths have it.
+#[test]
+fn normal_maps_turn_what_is_received() {
+    let session = Session::open();
+    for towards in [-1.0, 1.0] {
+        let camera = view(DVec3::new(0.1, 0.6, 0.0), DVec3::new(0.0, -0.9, 0.0));
+        let (ratio, error) = against_paths(&session, &turned_floor(towards), camera, options(4000, 0));
+        println!("{towards}: mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < 0.06 && error < 0.1, "{towards}: {ratio} {error}");
+    }
 }
