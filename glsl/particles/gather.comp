@@ -1,7 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "lib/vectors.glsl"
-#include "particles/link.glsl"
 
 // The irradiance of indirect light at one particle that is used, W/m² (Chang et al. 4.3.1): its links are spread by the cosine, so
 //
@@ -21,17 +20,12 @@ layout(push_constant, scalar) uniform Push {
     uint link_count;
 } push;
 
+#include "particles/gathered.glsl"
+
 void main() {
     uint own = gl_GlobalInvocationID.x;
     if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
         return;
     }
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
-        uint end = texelFetch(links, int(own * push.link_count + i)).x;
-        if (ends_on_particle(end)) {
-            sum += texelFetch(radiance, int(particle_of_link(end))).rgb;
-        }
-    }
-    irradiance[push.first + own] = vec4(sum * (PI / float(push.link_count)), texelFetch(matter, int(push.first + own)).w);
+    irradiance[push.first + own] = vec4(gathered(own, push.link_count), texelFetch(matter, int(push.first + own)).w);
 }

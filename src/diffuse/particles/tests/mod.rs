@@ -2,6 +2,7 @@
 
 mod lamps;
 mod moving;
+mod transport;
 
 use glam::DVec3;
 
