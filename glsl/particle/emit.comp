@@ -17,7 +17,7 @@
 // so that the flux of all paths is N times what all lights send out. A share of the paths is sent to points of triangles that gather
 // light (src/frame/rays/targets.rs) instead of by p(ω); what both carry is changed for it where they arrive (path/scatter.comp).
 // Lights with a range send none: their light ends where no path would. Of a directional light only what falls within R of the scene's
-// middle counts (particle/parallel_light.glsl).
+// middle counts (lib/parallel_light.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -28,7 +28,7 @@ layout(constant_id = 0) const uint FAR_SURFACES = 0u;
 #include "lib/bvh.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/emissive_points.glsl"
-#include "particle/parallel_light.glsl"
+#include "lib/parallel_light.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;

@@ -1,9 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/particles.glsl"
 #include "lib/color.glsl"
 #include "lib/octahedral.glsl"
-#include "lib/vectors.glsl"
-#include "groups/particles.glsl"
 #include "particles/link_direction.glsl"
 
 // The irradiance of indirect light at one particle that is used, W/m² (Chang et al. 4.3.1): its links are spread by the cosine, so
@@ -12,7 +11,7 @@
 //
 // Interleaved, it takes a quarter of its links, its neighbours in space the others: who reads their mean (irradiance.glsl) has all (Keller & Heidrich 2001,
 // with particles in place of pixels).
-
+//
 // Where normal maps turn the surface against its particle, its normal being n, another one n' receives (with c = n·n', directions below the surface being dark)
 //
 //   E(n') ≈ E (1 + c)/2 + T·n'        T = ∫ L ω dω without its part along n ≈ π/N Σ_k L ω_k/cosθ_k
@@ -37,6 +36,8 @@ layout(push_constant, scalar) uniform Push {
     uint parts;       // of the links, one of which is taken: 1 or 4
 } push;
 
+#include "particles/gathered.glsl"
+
 void main() {
     uint own = gl_GlobalInvocationID.x;
     if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
@@ -49,15 +50,12 @@ void main() {
     vec3 sum = vec3(0.0);
     vec2 turn = vec2(0.0);
     [[dont_unroll]] for (uint i = 0u; i < taken; ++i) {
-        uint end = texelFetch(links, int(own * link_count + begin + i)).x;
-        if (ends_on_particle(end)) {
-            vec3 found = texelFetch(radiance, int(particle_of_link(end))).rgb;
-            sum += found;
-            if (TURNS != 0u) {
-                vec2 stratum = vec2(stratum_of_link(begin + i, push.gather_side)) + 0.5;
-                vec3 direction = cosine_direction(stratum / float(push.gather_side));
-                turn += luminance(found) * direction.xy / direction.z;
-            }
+        vec3 found = radiance_at_end(own * link_count + begin + i);
+        sum += found;
+        if (TURNS != 0u) {
+            vec2 stratum = vec2(stratum_of_link(begin + i, push.gather_side)) + 0.5;
+            vec3 direction = cosine_direction(stratum / float(push.gather_side));
+            turn += luminance(found) * direction.xy / direction.z;
         }
     }
     irradiance[particle] = vec4(sum * (PI / float(taken)), texelFetch(matter, int(particle)).w);

@@ -112,8 +112,8 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
         }
         if (has_diffuse_lobe(material)) {
             // Behind mirrors the link stands for what they let through, or for nothing.
-            bool arrives = event == 0u || uniform_of(seed_of(seed, 9u)) < dot(carried, vec3(1.0 / 3.0));
-            if (!arrives) {
+            float random = uniform_of(seed_of(seed, 9u));
+            if (event > 0u && random >= max3(carried)) {
                 return ends;
             }
             uint home = home_of_hit(met, dot(front, direction) < 0.0 ? front : -front, direction, hit.distance);
@@ -121,10 +121,11 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
                 atomicAdd(lost[1], 1u);
                 return ends;
             }
+            uint end = event == 0u ? home : link_behind(home, carried, random);
             if (ends.first == DARK_LINK) {
-                ends.first = home;
+                ends.first = end;
             } else {
-                ends.second = home;
+                ends.second = end;
             }
             ends.gathered = event == 0u ? bringing_light(home, brings) : ends.gathered;
             if (event > 0u) {
@@ -139,7 +140,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
         carried *= passage.weight;
         // Off a surface with both lobes few go on, which then carry as much as the others.
         if (ends.first != DARK_LINK) {
-            float chance = min(dot(carried, vec3(1.0 / 3.0)), 1.0);
+            float chance = min(max3(carried), 1.0);
             if (uniform_of(seed_of(seed, 11u)) >= chance) {
                 return ends;
             }

@@ -33,9 +33,11 @@ layout(push_constant, scalar) uniform Push {
 
 void add_to(uint end, uvec3 share) {
     if (ends_on_particle(end)) {
-        atomicAdd(next[3u * end], share.r);
-        atomicAdd(next[3u * end + 1u], share.g);
-        atomicAdd(next[3u * end + 2u], share.b);
+        uint first = 3u * particle_of_link(end);
+        share *= channels_of_link(end);
+        atomicAdd(next[first], share.r);
+        atomicAdd(next[first + 1u], share.g);
+        atomicAdd(next[first + 2u], share.b);
     }
 }
 

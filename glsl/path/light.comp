@@ -25,7 +25,7 @@ layout(set = 0, binding = 2) buffer QueueBlock { uint connections[]; };
 
 #include "lib/ray_offset.glsl"
 #include "lib/emissive_points.glsl"
-#include "particle/parallel_light.glsl"
+#include "lib/parallel_light.glsl"
 
 layout(push_constant, scalar) uniform Push {
     uint emitter_count;

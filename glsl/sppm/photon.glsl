@@ -5,17 +5,13 @@
 //   points   3 texels (rgba32ui)   position | geometric normal · diffuse albedo times throughput/P(D) | shading normal ·
 //                                  greatest f0 and f90 (unorm16 each) | direction to the viewer | vertices before | rays of `probe`
 //
-// The grid's cells have sides of two radii, so that a disc touches two cells along each axis. It repeats after 2^bits cells:
-// neighbours never share a bucket, far cells may, which the distance tells apart.
+// The grid's cells have sides of two radii, so that a disc touches two cells along each axis.
 #ifndef SPPM_PHOTON
 #define SPPM_PHOTON
 
+#include "buckets/wrapped.glsl"
+
 const int PHOTON_TEXELS = 3;
 const int POINT_TEXELS = 3;
-
-uint bucket_of(ivec3 cell, uint bits) {
-    uvec3 wrapped = uvec3(cell) & ((1u << bits) - 1u);
-    return (wrapped.z << bits | wrapped.y) << bits | wrapped.x;
-}
 
 #endif

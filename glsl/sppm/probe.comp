@@ -23,23 +23,12 @@ layout(push_constant, scalar) uniform Push {
 
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
+#include "lib/disc_surface.glsl"
 #include "lib/octahedral.glsl"
-#include "lib/microfacet.glsl"
 
 // Of the sample sequence, one a ray.
 const uint STREAM_PROBE = 0x40000000u;
 const uint MOST_RAYS = 64u;
-
-// The conditions of sppm/gather.comp; textures of metals and of glass are not asked.
-bool takes_photons(Hit hit, vec3 offset, vec3 normal) {
-    if (hit.triangle == NO_TRIANGLE || dot(offset, offset) >= push.radius * push.radius) {
-        return false;
-    }
-    Triangle triangle = load_triangle(triangles, hit.triangle);
-    Material material = load_material(materials, triangle.material);
-    float diffuse = max3(material.base_color.rgb) * (1.0 - material.metallic) * (1.0 - material.transmission);
-    return diffuse > 0.0 && abs(dot(front_normal(triangle), normal)) > 0.5;
-}
 
 void main() {
     uint path = queued_path(point_queue);
@@ -48,18 +37,13 @@ void main() {
     }
     uint first = uint(POINT_TEXELS) * path;
     vec3 position = uintBitsToFloat(points[first].xyz);
-    vec3 normal = unpack_direction(points[first].w);
-    Frame frame = frame_around(normal);
+    Frame frame = frame_around(unpack_direction(points[first].w));
     uvec2 seed = texelFetch(path_seeds, int(path)).xy;
     uint rays = 0u;
     bool met = false;
     [[dont_unroll]] while (!met && rays < MOST_RAYS) {
         vec2 random = sobol_sample(sobol, seed.y, seed_of(seed.x, STREAM_PROBE + rays)).xy;
-        float distance = push.radius * sqrt(random.x);
-        float azimuth = 2.0 * PI * random.y;
-        vec3 across = distance * (cos(azimuth) * frame.tangent + sin(azimuth) * frame.bitangent);
-        Hit hit = closest_hit(position + across + 0.25 * push.radius * normal, -normal, 0.5 * push.radius);
-        met = takes_photons(hit, across + (0.25 * push.radius - hit.distance) * normal, normal);
+        met = meets_disc_surface(position, frame, push.radius, random);
         ++rays;
     }
     points[first + 2u].w = rays;

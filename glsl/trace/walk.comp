@@ -5,8 +5,7 @@
 #include "groups/surface.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
-#include "lib/hit_material.glsl"
-#include "lib/lobes.glsl"
+#include "lib/hit_vertex.glsl"
 #include "lib/mirrored.glsl"
 #include "lib/pixel_rays.glsl"
 #include "lib/pixels.glsl"
@@ -165,45 +164,23 @@ bool follow(out Vertex vertex) {
         shining_sum += (way.shows & SHOWS_SKY) != 0u ? way.weight * push.sky : vec3(0.0);
         return false;
     }
-    Triangle triangle = load_triangle(triangles, hit.triangle);
-    Material material = load_material(materials, triangle.material);
-    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
-    vec3 face = front_normal(triangle);
-    bool front = dot(face, way.direction) < 0.0;
-    MaterialPoint point = material_factors(material, VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0));
-    vec3 normal_texel = vec3(0.0, 0.0, 1.0);
-    if ((material.flags & TEXTURES & MATERIAL_ALL_TEXTURES) != 0u) {
-        vec4 sets = interpolated(corner_texcoords, triangle, weights);
-        apply_textures(point, normal_texel, material, triangle.material, sets, Footprint(vec4(0.0), vec4(0.0)));
+    HitVertex met = vertex_of_hit(hit, way.origin, way.direction);
+    way.weight *= met.transmittance;
+    if (met.unlit || (way.shows & SHOWS_LAMPS) != 0u) {
+        shining_sum += way.weight * met.emitted;
     }
-    if (TRANSMISSIVE != 0u && !front) {
-        vec4 medium = texelFetch(media, int(triangle.material));
-        way.weight *= exp(-medium.xyz * (medium.w * hit.distance));
-    }
-    bool unlit = (material.flags & MATERIAL_UNLIT) != 0u;
-    if (unlit || (way.shows & SHOWS_LAMPS) != 0u) {
-        shining_sum += way.weight * emitted_radiance(material, point, front);
-    }
-    Lobes lobes = lobes_of_material(material, point);
-    vec3 transmission = clamp(point.base_color.rgb * ((1.0 - point.metallic) * point.transmission), 0.0, 1.0);
-    float relative_ior = 1.0;
-    if (TRANSMISSIVE != 0u && max3(transmission) > 0.0 && texelFetch(media, int(triangle.material)).w > 0.0) {
-        relative_ior = front ? material.ior : 1.0 / material.ior;
-    }
-    vertex.matter = Matter(
-        clamp(lobes.diffuse_albedo, 0.0, 1.0), clamp(lobes.f0, 0.0, 1.0), lobes.f90, max(lobes.roughness * lobes.roughness, MINIMUM_ALPHA),
-        transmission, relative_ior);
-    vertex.face = front ? face : -face;
-    vertex.position = point_of_hit(triangle, hit.barycentric, face, way.origin, hit.distance * way.direction);
+    vertex.matter = met.matter;
+    vertex.face = met.face;
+    vertex.position = met.position;
     vertex.origin = offset_ray_origin(vertex.position, vertex.face);
-    vertex.normal = mapped_normal(triangle, material, weights, face, vertex.face, normal_texel);
+    vertex.normal = met.normal;
     vertex.to_viewer = -way.direction;
     vertex.weight = way.weight;
     vertex.event = way.event;
     vertex.seed = way.seed;
-    bool wide = max(max3(lobes.f0), lobes.f90) > 0.0 && (push.point_lights != 0u ? vertex.matter.alpha > MINIMUM_ALPHA : !is_narrow(vertex.matter.alpha));
-    list(vertex, lobes.roughness, hit.distance, !unlit && (wide || max3(lobes.diffuse_albedo) > 0.0));
-    return !unlit && way.event < push.depth;
+    bool wide = max(max3(met.matter.f0), met.matter.f90) > 0.0 && (push.point_lights != 0u ? vertex.matter.alpha > MINIMUM_ALPHA : !is_narrow(vertex.matter.alpha));
+    list(vertex, met.roughness, hit.distance, !met.unlit && (wide || max3(met.matter.diffuse_albedo) > 0.0));
+    return !met.unlit && way.event < push.depth;
 }
 
 // The surface at a pixel. Returns whether it has a specular lobe.

@@ -4,6 +4,7 @@
 //! Every test opens a device of its own with validation ([`session`]) and fails on any message and on any allocation
 //! that outlives its renderer.
 
+pub(crate) mod against_paths;
 mod bench_slots;
 mod bvh;
 mod bvh_closed;

@@ -11,6 +11,7 @@ macro_rules! for_all_methods {
             }
             diffuse {
                 ambient => Ambient(AmbientOptions),
+                final_gather => FinalGather(FinalGatherOptions),
                 particles => Particles(ParticlesOptions),
                 rsm => Rsm(RsmOptions),
                 vpl => Vpl(VplOptions),

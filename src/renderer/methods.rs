@@ -169,10 +169,10 @@ impl Settings {
             DIFFUSE.iter().filter(|entry| entry.lights_mirrored).map(|entry| entry.name).collect();
         ((specular.inputs)(self).mirrored_light && !offered).then(|| {
             format!(
-                "{} shows what mirrors show by direct light alone: --diffuse {} offers no other, {} do",
+                "{} shows what mirrors show by direct light alone: --diffuse {} offers no other; these do: {}",
                 specular.name,
                 self.methods.name_of(Slot::Diffuse),
-                offering.join(" and ")
+                offering.join(", ")
             )
         })
     }

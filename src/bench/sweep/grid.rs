@@ -65,6 +65,9 @@ pub struct GridScene {
     /// Width and height in pixels; `None`: the grid's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[u32; 2]>,
+    /// Settings that belong to the scene; what a series sets or varies comes after.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set: BTreeMap<String, Value>,
 }
 
 /// Times that somebody published of one point.
@@ -73,6 +76,9 @@ pub struct GridScene {
 pub struct Published {
     /// The scene's name in the grid.
     pub scene: String,
+    /// That of the series; `None`: any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub series: Option<String>,
     /// The settings that tell the point from others of the scene.
     #[serde(default)]
     pub values: BTreeMap<String, Value>,
@@ -87,6 +93,9 @@ pub struct Series {
     pub name: String,
     /// The technique.
     pub technique: Technique,
+    /// Methods in place of the technique's, by slot.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub methods: BTreeMap<Slot, String>,
     /// The presets, each a point of its own.
     pub preset: Vec<Preset>,
     /// Settings changed after the preset, the same for all points.
@@ -203,10 +212,16 @@ impl Grid {
         scene.size.unwrap_or(self.size)
     }
 
-    /// What somebody published of a point with these values: milliseconds by column.
-    pub fn published_of(&self, scene: &str, values: &BTreeMap<String, Value>) -> Option<&BTreeMap<String, f64>> {
+    /// What somebody published of a point of a series with these values: milliseconds by column.
+    pub fn published_of(
+        &self,
+        (scene, series): (&str, &str),
+        values: &BTreeMap<String, Value>,
+    ) -> Option<&BTreeMap<String, f64>> {
         let is_of = |entry: &&Published| {
-            entry.scene == scene && entry.values.iter().all(|(key, value)| values.get(key) == Some(value))
+            entry.scene == scene
+                && entry.series.as_deref().is_none_or(|name| name == series)
+                && entry.values.iter().all(|(key, value)| values.get(key) == Some(value))
         };
         self.published.iter().find(is_of).map(|entry| &entry.ms)
     }

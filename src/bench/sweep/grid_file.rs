@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::grid::{Compare, FRAME_COLUMN, Grid, GridScene, Interleave, Metric, Published, Series};
-use crate::renderer::{Preset, Technique};
+use crate::renderer::{Preset, Slot, Technique};
 use crate::scene::LightSpec;
 
 /// A grid that cannot be read. One sentence: which file, where in it, what to do.
@@ -112,6 +112,8 @@ struct FileScene {
     light: Vec<String>,
     sky: Option<[f32; 3]>,
     size: Option<[u32; 2]>,
+    #[serde(default)]
+    set: BTreeMap<String, Value>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -119,6 +121,8 @@ struct FileScene {
 struct FileSeries {
     name: Option<String>,
     technique: String,
+    #[serde(default)]
+    methods: BTreeMap<String, String>,
     preset: Option<OneOrMore>,
     #[serde(default)]
     set: BTreeMap<String, Value>,
@@ -181,6 +185,10 @@ fn check_published(grid: &Grid, published: &Published) -> Result<(), String> {
         return Err(format!("published: there is no scene {:?}; scenes: {}", published.scene, scenes.join(", ")));
     }
     let columns: Vec<&str> = grid.columns.keys().map(String::as_str).chain([FRAME_COLUMN]).collect();
+    let series: Vec<&str> = grid.series.iter().map(|series| series.name.as_str()).collect();
+    if let Some(name) = published.series.as_deref().filter(|name| !series.contains(name)) {
+        return Err(format!("published: there is no series {name:?}; series: {}", series.join(", ")));
+    }
     match published.ms.keys().find(|name| !columns.contains(&name.as_str())) {
         Some(name) => Err(format!("published: there is no column {name:?}; columns: {}", columns.join(", "))),
         None => Ok(()),
@@ -190,7 +198,7 @@ fn check_published(grid: &Grid, published: &Published) -> Result<(), String> {
 fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     let scene = match scene {
         toml::Value::String(path) => {
-            FileScene { path, name: None, camera: None, light: Vec::new(), sky: None, size: None }
+            FileScene { path, name: None, camera: None, light: Vec::new(), sky: None, size: None, set: BTreeMap::new() }
         }
         table => {
             let named = table.get("name").or_else(|| table.get("path")).and_then(toml::Value::as_str);
@@ -216,7 +224,8 @@ fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     };
     let stem = Path::new(&scene.path).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let name = scene.name.or(stem).unwrap_or_default();
-    Ok(GridScene { name, path: scene.path, camera, light: scene.light, sky: scene.sky, size: scene.size })
+    let FileScene { path, light, sky, size, set, .. } = scene;
+    Ok(GridScene { name, path, camera, light, sky, size, set })
 }
 
 fn read_series(index: usize, table: toml::Table) -> Result<Series, String> {
@@ -241,8 +250,15 @@ fn read_series(index: usize, table: toml::Table) -> Result<Series, String> {
     if let Some(key) = series.set.keys().find(|key| series.vary.contains_key(*key)) {
         return Err(said(&format!("{key} is both set and varied; leave it in one of them")));
     }
+    let mut chosen = technique.methods();
+    let mut methods = BTreeMap::new();
+    for (slot, method) in series.methods {
+        let slot = Slot::from_name(&slot).ok_or_else(|| said(&format!("there is no slot {slot:?}")))?;
+        chosen.set(slot, &method).map_err(|error| said(&error))?;
+        methods.insert(slot, method);
+    }
     let name = series.name.unwrap_or_else(|| technique.name().to_owned());
-    Ok(Series { name, technique, preset, set: series.set, vary: series.vary })
+    Ok(Series { name, technique, methods, preset, set: series.set, vary: series.vary })
 }
 
 /// `series "rsm"`, or `series 2` if it has no name.
@@ -308,8 +324,8 @@ mod tests {
 
     #[test]
     fn scenes_may_be_tables() {
-        let scene =
-            "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3], size = [64, 32] }";
+        let scene = "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3], size = [64, 32], \
+            set = { \"particles.count\" = 5 } }";
         let grid = parse(&format!("scenes = [\"ring\", {scene}]\n{SERIES}")).expect("sound");
         let expected = GridScene {
             name: "white-room".to_owned(),
@@ -318,6 +334,7 @@ mod tests {
             light: vec!["sun:45,60".to_owned()],
             sky: Some([1.0, 2.0, 3.0]),
             size: Some([64, 32]),
+            set: BTreeMap::from([("particles.count".to_owned(), Value::from(5))]),
         };
         assert_eq!(grid.scenes[1], expected);
     }
@@ -345,6 +362,9 @@ mod tests {
         assert_says(&format!("{scenes}{SERIES}{both}"), &["series \"a\"", "rsm.vpls", "both"]);
         assert_says(&format!("{scenes}{SERIES}vary = {{ \"rsm.vpls\" = [4, 4] }}"), &["series \"a\"", "twice", "4"]);
         assert_says(&format!("{scenes}{SERIES}{SERIES}"), &["series", "\"a\"", "another name"]);
+        let methods = |methods: &str| format!("{scenes}{SERIES}methods = {{ {methods} }}");
+        assert_says(&methods("diffus = \"rsm\""), &["series \"a\"", "no slot \"diffus\""]);
+        assert_says(&methods("diffuse = \"rms\""), &["series \"a\"", "rms", "final-gather"]);
         assert_says(&format!("{scenes}entry = \"depth\"\n{SERIES}"), &["depth", "covered", "diffuse"]);
         assert_says(&format!("{scenes}compare = \"all\"\n{SERIES}"), &["line 2", "all", "full", "equal"]);
         assert_says(&format!("{scenes}frames = 0\n{SERIES}"), &["frames", "at least 1"]);

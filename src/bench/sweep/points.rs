@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde_json::{Value, json};
 
 use super::grid::{Grid, GridScene, Series};
-use crate::renderer::{Settings, SettingsError};
+use crate::renderer::{Settings, SettingsError, UnknownMethod};
 
 /// One technique with one set of settings on one scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,14 @@ pub enum PointsError {
         /// What is wrong.
         what: SettingsError,
     },
+    /// A slot has no such method.
+    #[error("series {series:?}: {what}")]
+    Method {
+        /// The series.
+        series: String,
+        /// What is wrong.
+        what: UnknownMethod,
+    },
     /// Two combinations of a series are the same.
     #[error("series {series:?} names the point {values} twice; leave one out")]
     Twice {
@@ -54,9 +62,27 @@ impl Grid {
     /// # Errors
     /// Unknown settings, values out of range, points that are there twice.
     pub fn points(&self) -> Result<Vec<Point>, PointsError> {
+        let mut points = Vec::new();
+        for (scene_index, scene) in self.scenes.iter().enumerate() {
+            for (combination, (series, values, settings)) in self.combinations(scene)?.into_iter().enumerate() {
+                points.push(Point {
+                    id: self.id(scene, &self.series[series], &settings),
+                    scene: scene_index,
+                    series,
+                    combination,
+                    values,
+                    settings,
+                });
+            }
+        }
+        Ok(points)
+    }
+
+    /// Those of all series on one scene, with the number of the series.
+    fn combinations(&self, scene: &GridScene) -> Result<Vec<(usize, BTreeMap<String, Value>, Settings)>, PointsError> {
         let mut combinations = Vec::new();
         for (index, series) in self.series.iter().enumerate() {
-            let of_series = series.combinations()?;
+            let of_series = series.combinations(&scene.set)?;
             for (position, (values, _)) in of_series.iter().enumerate() {
                 if of_series[..position].iter().any(|(other, _)| other == values) {
                     return Err(PointsError::Twice { series: series.name.clone(), values: json!(values).to_string() });
@@ -64,20 +90,7 @@ impl Grid {
             }
             combinations.extend(of_series.into_iter().map(|(values, settings)| (index, values, settings)));
         }
-        let mut points = Vec::new();
-        for (scene_index, scene) in self.scenes.iter().enumerate() {
-            for (combination, (series, values, settings)) in combinations.iter().enumerate() {
-                points.push(Point {
-                    id: self.id(scene, &self.series[*series], settings),
-                    scene: scene_index,
-                    series: *series,
-                    combination,
-                    values: values.clone(),
-                    settings: settings.clone(),
-                });
-            }
-        }
-        Ok(points)
+        Ok(combinations)
     }
 
     /// What is measured, hashed. How long a point may take and what is shown of it are not part of that.
@@ -99,12 +112,16 @@ impl Grid {
 type Combination = (BTreeMap<String, Value>, Settings);
 
 impl Series {
-    fn combinations(&self) -> Result<Vec<Combination>, PointsError> {
+    fn combinations(&self, of_scene: &BTreeMap<String, Value>) -> Result<Vec<Combination>, PointsError> {
         let failed = |what| PointsError::Setting { series: self.name.clone(), what };
+        let unknown = |what| PointsError::Method { series: self.name.clone(), what };
         let mut combinations = Vec::new();
         for preset in &self.preset {
             let mut settings = Settings::new(self.technique, *preset);
-            for (key, value) in &self.set {
+            for (slot, method) in &self.methods {
+                settings.methods.set(*slot, method).map_err(unknown)?;
+            }
+            for (key, value) in of_scene.iter().chain(&self.set) {
                 settings.set(key, &written(value)).map_err(failed)?;
             }
             let mut values = BTreeMap::new();
@@ -175,6 +192,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::renderer::DirectMethod;
 
     const PRODUCT: &str = "scenes = [\"ring\", \"corridor\", \"maze\"]\n[[series]]\ntechnique = \"rsm\"\n\
         preset = [\"draft\", \"high\"]\nset = { \"lights.resolution\" = 64 }\n\
@@ -183,6 +201,17 @@ mod tests {
 
     fn grid(text: &str) -> Grid {
         Grid::parse(text, Path::new("x.toml")).expect("sound")
+    }
+
+    #[test]
+    fn what_a_series_sets_comes_after_what_belongs_to_the_scene() {
+        let scenes =
+            "scenes = [\"ring\", { path = \"maze\", set = { \"rsm.vpls\" = 7, \"lights.resolution\" = 32 } }]\n";
+        let series = "[[series]]\ntechnique = \"rsm\"\nmethods = { direct = \"traced\" }\nset = { \"rsm.vpls\" = 9 }\n";
+        let points = grid(&format!("{scenes}{series}")).points().expect("sound");
+        let resolution = |point: &Point| (point.settings.rsm.vpls, point.settings.lights.resolution);
+        assert_eq!([resolution(&points[0]), resolution(&points[1])], [(9, 512), (9, 32)]);
+        assert!(points.iter().all(|point| point.settings.methods.direct == DirectMethod::Traced));
     }
 
     #[test]

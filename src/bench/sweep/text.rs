@@ -66,7 +66,7 @@ fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
     let measured = mark.measured;
     let errors = |compare| sweep.grid.errors(&measured.run, compare);
     let values = measured.values.iter().map(|(key, value)| format!("{key} {}", written(value)));
-    let published = sweep.grid.published_of(&measured.scene, &measured.values);
+    let published = sweep.grid.published_of((&measured.scene, &measured.series), &measured.values);
     let theirs = |column: &str| published.and_then(|ms| ms.get(column)).copied();
     let columns = sweep.grid.columns.iter();
     let columns = columns.map(|(name, passes)| time_cell(column_ms(&measured.run, passes), theirs(name)));
@@ -159,6 +159,7 @@ mod tests {
         sweep.grid.columns = BTreeMap::from([("gather".to_owned(), vec!["diffuse/rsm".to_owned()])]);
         sweep.grid.published = vec![Published {
             scene: "ring".to_owned(),
+            series: None,
             values: BTreeMap::from([("rsm.vpls".to_owned(), Value::from(64))]),
             ms: BTreeMap::from([("gather".to_owned(), 7.25)]),
         }];
@@ -169,6 +170,8 @@ mod tests {
         let row = |words: &str| text.lines().find(|line| line.contains(words)).expect("a row").to_owned();
         assert!(row("rsm.vpls 64").contains("3.500 (7.25)"), "{text}");
         assert!(row("rsm.vpls 16").contains("3.500") && !row("rsm.vpls 16").contains('('), "{text}");
+        sweep.grid.published[0].series = Some("another".to_owned());
+        assert!(!scene_text(&sweep, "ring").contains("(7.25)"));
     }
 
     #[test]

@@ -3,12 +3,13 @@
 use super::formats::{FLOATS4, WORD};
 use super::geometry::ParticleSpace;
 use super::links::lobes_of;
-use super::options::ParticlesOptions;
+use super::options::{ParticleTransport, ParticlesOptions};
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::particles::{
-    Emit, EmitPush, FluxScale, FluxScalePush, Glints, GlintsPush, Radiance, RadiancePush, Scatter, ScatterPush,
+    Bounce, BouncePush, Emit, EmitPush, FluxScale, FluxScalePush, Glints, GlintsPush, Radiance, RadiancePush, Scatter,
+    ScatterPush,
 };
 
 /// What the stage leaves.
@@ -19,7 +20,7 @@ pub(super) struct Lighting {
     /// Steps of fixed-point numbers a watt.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it"))]
     pub(super) scale: BufferRef<[f32; 4]>,
-    /// What each received in every scattering step.
+    /// What each received in every scattering step, where light is scattered.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests add it up"))]
     pub(super) received: Vec<BufferRef<u32>>,
     /// What each sends out, W/(m² sr).
@@ -68,6 +69,30 @@ pub(super) fn light(
     let pass = FluxScale { flux: emitted.texels(FLOATS4), scale: scale.write(), push };
     graph.pass("diffuse/particles/light/scale", pass).groups([1, 1, 1]);
 
+    let emission = Emission { emitted, scale };
+    match options.transport {
+        ParticleTransport::TwoWay => scatter(graph, scene, space, options, (emission, steps)),
+        ParticleTransport::GatherOnly => gather(graph, scene, space, options, (emission, steps)),
+    }
+}
+
+/// What lights gave, and in which steps it is added up further on.
+#[derive(Clone, Copy)]
+struct Emission {
+    emitted: BufferRef<[f32; 4]>,
+    scale: BufferRef<[f32; 4]>,
+}
+
+/// Passes it on along links, step by step.
+fn scatter(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    space: &ParticleSpace,
+    options: &ParticlesOptions,
+    (Emission { emitted, scale }, steps): (Emission, u32),
+) -> Lighting {
+    let particle_count = space.count;
+    let threads = [particle_count, 1, 1];
     let link_count = options.scatter * options.scatter;
     let mut total = emitted;
     let mut received: Vec<BufferRef<u32>> = Vec::new();
@@ -92,20 +117,67 @@ pub(super) fn light(
         graph.pass(&format!("diffuse/particles/light/scatter.{number}"), pass).threads(threads);
         received.push(next);
     }
-    let radiance = graph.buffer::<[f32; 4]>("particles.radiance", particle_count as usize);
-    let pass = Radiance {
-        scattered: u32::from(!received.is_empty()),
-        matter: space.matter.texels(FLOATS4),
-        total: total.texels(FLOATS4),
-        scale: scale.texels(FLOATS4),
-        received: received.last().unwrap_or(&space.arrivals).texels(WORD),
-        radiance: radiance.write(),
-        push: RadiancePush { particle_count },
-    };
-    graph.pass("diffuse/particles/light/radiance", pass).threads(threads);
+    let radiance = radiance_of(graph, space, (total, scale), received.last().copied());
     Lighting { emitted, scale, received, radiance }
 }
 
+/// What all particles send out that received `total`, and in one step more `received`.
+fn radiance_of(
+    graph: &mut Graph<'_>,
+    space: &ParticleSpace,
+    (total, scale): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    received: Option<BufferRef<u32>>,
+) -> BufferRef<[f32; 4]> {
+    let radiance = graph.buffer::<[f32; 4]>("particles.radiance", space.count as usize);
+    let pass = Radiance {
+        scattered: u32::from(received.is_some()),
+        matter: space.matter.texels(FLOATS4),
+        total: total.texels(FLOATS4),
+        scale: scale.texels(FLOATS4),
+        received: received.unwrap_or(space.arrivals).texels(WORD),
+        radiance: radiance.write(),
+        push: RadiancePush { particle_count: space.count },
+    };
+    graph.pass("diffuse/particles/light/radiance", pass).threads([space.count, 1, 1]);
+    radiance
+}
+
+/// Has all particles gather it, bounce by bounce.
+fn gather(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    space: &ParticleSpace,
+    options: &ParticlesOptions,
+    (Emission { emitted, scale }, bounces): (Emission, u32),
+) -> Lighting {
+    let mut radiance = radiance_of(graph, space, (emitted, scale), None);
+    let scatter_count = options.scatter * options.scatter;
+    let mut other = graph.buffer::<[f32; 4]>("particles.radiance.other", space.count as usize);
+    for bounce in 0..bounces {
+        for (number, chunk) in space.chunks.iter().enumerate() {
+            let pass = Bounce {
+                second_ends: u32::from(scene.facts.specular),
+                links: chunk.links.texels(WORD),
+                scatter_links: space.scatter_links.texels(WORD),
+                radiance: radiance.texels(FLOATS4),
+                matter: space.matter.texels(FLOATS4),
+                emitted: emitted.texels(FLOATS4),
+                next: if number == 0 { other.start_then_read() } else { other.read_write() },
+                push: BouncePush {
+                    first: chunk.first,
+                    count: chunk.count,
+                    link_count: options.gather * options.gather,
+                    scatter_count,
+                    second_ends: scatter_count * space.count,
+                },
+            };
+            let pass = graph.pass(&format!("diffuse/particles/light/gather.{bounce}.{number}"), pass);
+            pass.threads([chunk.count, 1, 1]);
+        }
+        std::mem::swap(&mut radiance, &mut other);
+    }
+    Lighting { emitted, scale, received: Vec::new(), radiance }
+}
 /// What photons bring off mirrors and through glass, in steps, and steps a watt; none where nothing is glossy or the sky alone shines.
 fn glints(
     graph: &mut Graph<'_>,

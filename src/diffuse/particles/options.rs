@@ -15,13 +15,25 @@ choices! {
     }
 }
 
+choices! {
+    /// How light goes from particle to particle before the last gathering.
+    ParticleTransport {
+        /// Scattered forwards, one link a particle from the second step on: the paper.
+        TwoWay = "two-way",
+        /// Gathered by all particles through all their links, bounce by bounce: what the paper compares with.
+        GatherOnly = "gather-only",
+    }
+}
+
 options! {
     /// Options of the `particles` diffuse method (Chang, Park & Ihm).
     ParticlesOptions, "particles":
     /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
     count: u32 = 0, draft = 20_000; OptionKind::Integer(0, 600_000), "particles", "linear";
-    /// Scattering steps, the first one included; the gathering step is one more. None: until less than a hundredth of the flux is left.
+    /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. None: until less than a hundredth of the flux is left.
     bounces: Option<u32> = None; OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
+    /// How light goes from particle to particle. Bounces mean the same light paths either way.
+    transport: ParticleTransport = ParticleTransport::TwoWay; OptionKind::Choice(ParticleTransport::NAMES), "", "";
     /// Links a side of the square of directions that the first scattering step takes.
     scatter: u32 = 4; OptionKind::OneOf(&[1, 2, 4, 8]), "links", "quadratic";
     /// Links a side of the square of directions that irradiance is gathered by.

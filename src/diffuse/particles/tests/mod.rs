@@ -3,6 +3,7 @@
 mod lamps;
 mod moving;
 mod receivers;
+mod transport;
 
 use glam::DVec3;
 
@@ -119,24 +120,10 @@ fn the_walls_get_what_a_light_sends_out_and_pass_on_their_albedo_of_it() {
     }
 }
 
-/// A small picture's slot `diffuse`: the mean, and the relative error of blocks of 8×8 pixels.
+/// The ratio of means and the error of blocks.
 fn against_paths(session: &Session, scene: &Scene, camera: CameraView, options: ParticlesOptions) -> (f64, f64) {
-    let asked = request([64, 48], camera, &[Slot::Diffuse]);
-    let mut path = Settings::new(Technique::Path, Preset::Default);
-    (path.path.spp, path.path.bounces) = (96, options.bounces.map(|bounces| bounces + 1));
-    let blocks = |frame: &Frame| {
-        let pixels = &frame.slots[&Slot::Diffuse].pixels;
-        let block = |index: usize| {
-            let [row, column] = [8 * (index / 8), 8 * (index % 8)];
-            let sum: f64 = (0..64).map(|p| f64::from(pixels[(row + p / 8) * 64 + column + p % 8][1])).sum();
-            sum / 64.0
-        };
-        (0..48).map(block).collect::<Vec<f64>>()
-    };
-    let [found, expected] = [settings(options), path].map(|settings| blocks(&session.render(scene, &settings, &asked)));
-    let mean = expected.iter().sum::<f64>() / 48.0;
-    let squares: f64 = found.iter().zip(&expected).map(|(a, b)| (a - b).powi(2)).sum();
-    (found.iter().sum::<f64>() / 48.0 / mean, (squares / 48.0).sqrt() / mean)
+    let bounces = options.bounces.map(|bounces| bounces + 1);
+    crate::gpu_tests::against_paths::against_paths(session, scene, camera, &settings(options), (96, bounces))
 }
 
 #[test]

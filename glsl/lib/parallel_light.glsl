@@ -1,7 +1,7 @@
 // Where light paths of a directional light start: on a disc across it, as large as the sphere of radius R around all that matters, before that. Surfaces
 // beside the disc, and before it, get no paths; camera paths find their light alone (path/light.comp).
-#ifndef PARTICLE_PARALLEL_LIGHT
-#define PARTICLE_PARALLEL_LIGHT
+#ifndef LIB_PARALLEL_LIGHT
+#define LIB_PARALLEL_LIGHT
 
 #include "lib/vectors.glsl"
 

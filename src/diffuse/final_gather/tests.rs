@@ -1,0 +1,154 @@
+//! Final gathering against paths, and what stands when something moves.
+
+use glam::{DAffine3, DVec3};
+
+use super::options::FinalGatherOptions;
+use crate::gpu_tests::against_paths::against_paths;
+use crate::gpu_tests::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, request, view};
+use crate::gpu_tests::session::Session;
+use crate::method::{Options, Preset};
+use crate::renderer::{DiffuseMethod, Frame, FrameRequest, PassTiming, Settings, Slot, Technique, Timing};
+use crate::scene::{CameraView, LightKind, Material, Scene};
+
+/// Few rays: blocks of pixels average.
+fn options() -> FinalGatherOptions {
+    FinalGatherOptions { rays: 64, photons: 50_000, ..FinalGatherOptions::preset(Preset::Default) }
+}
+
+fn settings(options: FinalGatherOptions) -> Settings {
+    let mut settings = Settings::new(Technique::Direct, Preset::Default);
+    settings.methods.diffuse = DiffuseMethod::FinalGather;
+    Settings { final_gather: options, ..settings }
+}
+
+/// A room of which one wall is missing, under a sky.
+fn open_room() -> (Scene, CameraView) {
+    let mut scene = Scene::empty("open room");
+    let wall = scene.add_material(lambert([0.6, 0.5, 0.4])).expect("a sound material");
+    let mut faces = crate::gpu_tests::scenes::box_faces([1.0; 3], [wall; 6]);
+    faces.truncate(5);
+    place(&mut scene, faces, DAffine3::IDENTITY);
+    scene.set_sky([1.0, 1.2, 1.5]);
+    (scene, view(DVec3::new(0.2, 0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A closed box with a square lamp in it.
+fn lamp_box() -> (Scene, CameraView) {
+    let mut scene = closed_box(1.0, lambert([0.7, 0.5, 0.3]));
+    let lamp = scene.add_material(Material { emissive: [5.0; 3], ..lambert([0.0; 3]) }).expect("a sound material");
+    let corners = [[-0.3, 0.7, -0.3], [0.3, 0.7, -0.3], [0.3, 0.7, 0.3], [-0.3, 0.7, 0.3]];
+    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
+    (scene, view(DVec3::new(0.1, -0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A floor under the sun, and a wall that it lights.
+fn sunlit_corner() -> (Scene, CameraView) {
+    let mut scene = floor(1.0, lambert([0.7; 3]));
+    let wall = scene.add_material(lambert([0.7, 0.2, 0.2])).expect("a sound material");
+    let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 2.0, -1.0], [-1.0, 2.0, -1.0]];
+    place(&mut scene, vec![quad(corners, wall)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.2, -1.0, -0.7), [3.0; 3]);
+    (scene, view(DVec3::new(0.0, 1.0, 1.5), DVec3::new(0.0, 0.5, -1.0)))
+}
+
+fn with_camera(name: &str) -> (Scene, CameraView) {
+    let scene = builtin(name);
+    let camera = scene.camera_view(None).expect("its camera");
+    (scene, camera)
+}
+
+/// Every kind of light, mirrors and glass on its way, few bounces and all.
+#[test]
+fn pictures_are_those_of_paths() {
+    let session = Session::open();
+    let cases = [
+        ("cornell-point", with_camera("cornell-point"), None),
+        ("cornell-point", with_camera("cornell-point"), Some(1)),
+        ("cornell-point", with_camera("cornell-point"), Some(3)),
+        ("cornell-spot", with_camera("cornell-spot"), None),
+        ("lamp", lamp_box(), None),
+        ("sky", open_room(), None),
+        ("sun", sunlit_corner(), None),
+        ("ring", with_camera("ring"), None),
+        ("water", with_camera("water"), None),
+    ];
+    for (name, (scene, camera), bounces) in cases {
+        let settings = settings(FinalGatherOptions { bounces, ..options() });
+        let (ratio, error) = against_paths(&session, &scene, camera, &settings, (128, bounces));
+        println!("{name}, {bounces:?} bounces: mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < 0.025 && error < 0.06, "{name}, {bounces:?} bounces: {ratio} {error}");
+    }
+}
+
+/// Walls that are thicker than the discs of the estimate keep it out.
+#[test]
+fn light_stays_out_of_dark_rooms() {
+    let session = Session::open();
+    let scene = builtin("leak");
+    let mean = |camera: &str| {
+        let view = scene.camera_view(Some(camera)).expect("one of its cameras");
+        let frame = session.render(&scene, &settings(options()), &request([32, 24], view, &[Slot::Diffuse]));
+        let pixels = &frame.slots[&Slot::Diffuse].pixels;
+        pixels.iter().flatten().map(|&channel| f64::from(channel)).sum::<f64>() / (3 * pixels.len()) as f64
+    };
+    let lit = mean("lit");
+    assert!(lit > 0.0);
+    for (camera, most) in [("thin", 0.06), ("thick", 1e-3), ("sealed", 1e-3)] {
+        let leak = mean(camera) / lit;
+        println!("{camera}: {leak:.1e} of the lit hall's light");
+        assert!(leak < most, "{camera}: {leak:.1e} of the lit hall's light");
+    }
+}
+
+/// Full names of the passes of the method that ran.
+fn ran(frame: &Frame) -> Vec<String> {
+    let running = frame.timings.passes.iter().filter(|pass| pass.skipped.is_none());
+    running.map(PassTiming::full_name).filter(|name| name.starts_with("diffuse/final-gather")).collect()
+}
+
+#[test]
+fn what_did_not_change_stands_and_repeats_are_the_same_bits() {
+    let session = Session::open();
+    let mut scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    let asked =
+        |camera: CameraView| FrameRequest { timing: Timing::Passes, ..request([16, 12], camera, &[Slot::Diffuse]) };
+    let few = FinalGatherOptions { photons: 5000, rays: 16, ..options() };
+    let mut renderer = session.renderer(&settings(few));
+    let first = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    let again = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    assert!(ran(&again).is_empty(), "{:?}", ran(&again));
+    renderer.invalidate();
+    let anew = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    assert_eq!(first.slots, anew.slots, "bit by bit");
+
+    let beside = view(DVec3::new(0.1, 1.0, 2.9), DVec3::new(0.0, 1.0, 0.0));
+    let moved = ran(&renderer.render(&scene, &asked(beside)).expect("a frame"));
+    assert!(!moved.is_empty() && moved.iter().all(|name| name.contains("/gather/")), "{moved:?}");
+
+    let mut light = scene.lights()[0].clone();
+    light.intensity = light.intensity.map(|channel| 2.0 * channel);
+    scene.set_light(crate::scene::LightId(0), light).expect("a sound light");
+    let relit = renderer.render(&scene, &asked(camera)).expect("a frame");
+    assert!(ran(&relit).iter().any(|name| name.ends_with("/map/emit")), "{:?}", ran(&relit));
+    for (before, after) in first.slots[&Slot::Diffuse].pixels.iter().zip(&relit.slots[&Slot::Diffuse].pixels) {
+        assert!((after[0] - 2.0 * before[0]).abs() <= 1e-3 * after[0], "{before:?} {after:?}");
+    }
+}
+
+#[test]
+fn scenes_without_need_pay_nothing() {
+    let session = Session::open();
+    let reason = |scene: &Scene, bounces| {
+        let camera = view(DVec3::new(0.7, 0.6, 0.8), DVec3::ZERO);
+        let settings = settings(FinalGatherOptions { bounces, ..options() });
+        let frame = session.render(scene, &settings, &request([8, 8], camera, &[Slot::Diffuse]));
+        let row = frame.timings.passes.into_iter().find(|pass| pass.full_name().starts_with("diffuse/final-gather"));
+        row.and_then(|row| row.skipped).expect("a reason")
+    };
+    assert_eq!(reason(&closed_box(1.0, lambert([0.5; 3])), None), "no light");
+    assert_eq!(reason(&lamp_box().0, Some(0)), "no bounces asked for");
+    let mut metal = closed_box(1.0, Material { metallic: 1.0, ..lambert([0.5; 3]) });
+    add_light(&mut metal, LightKind::Point, DVec3::ZERO, DVec3::NEG_Y, [1.0; 3]);
+    assert_eq!(reason(&metal, None), "no diffuse surface");
+}
