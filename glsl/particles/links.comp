@@ -86,6 +86,11 @@ float uniform_of(uint seed) {
     return float(seed >> 8) / 16777216.0;
 }
 
+// How much more often than it carries light a ray goes on off the first surface, so that it carries less than all and some is left for surfaces beyond the
+// second; how many times what goes on off such a surface may come to in the end.
+const float LEFT_FOR_MORE = 1.25;
+const float MOST_FOLLOWING = 4.0;
+
 // `follows`: beyond the first surface.
 Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direction, uint seed, bool follows) {
     Ends ends = Ends(DARK_LINK, DARK_LINK, DARK_LINK);
@@ -94,11 +99,12 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
     }
     vec3 origin = offset_ray_origin(position, face);
     vec3 carried = vec3(1.0);
+    float passed = 0.0;  // the chance that it has come to stand for a surface with both lobes before
     bool brings = false;
     [[dont_unroll]] for (uint event = 0u; event <= MOST_SPECULAR; ++event) {
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
-            add_sky(particle, carried);
+            add_sky(particle, carried / (1.0 - passed));
             ends.gathered = event == 0u ? ESCAPED_LINK : bringing_light(ends.gathered, true);
             return ends;
         }
@@ -111,17 +117,15 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
             brings = add_emission(particle, triangle, material, hit, direction, density);
         }
         if (has_diffuse_lobe(material)) {
-            // Behind mirrors the link stands for what they let through, or for nothing.
             float random = uniform_of(seed_of(seed, 9u));
-            if (event > 0u && random >= max3(carried)) {
-                return ends;
-            }
-            uint home = home_of_hit(met, dot(front, direction) < 0.0 ? front : -front, direction, hit.distance);
-            if (home == NO_PARTICLE) {
+            // Behind mirrors the link stands for what they let through; where that passes it by, for what this surface's specular lobe passes on, or for nothing.
+            bool arrives = event == 0u || random < passed + max3(carried);
+            uint home = !arrives ? NO_PARTICLE : home_of_hit(met, dot(front, direction) < 0.0 ? front : -front, direction, hit.distance);
+            if (arrives && home == NO_PARTICLE) {
                 atomicAdd(lost[1], 1u);
                 return ends;
             }
-            uint end = event == 0u ? home : link_behind(home, carried, random);
+            uint end = event == 0u ? home : arrives ? link_behind(home, carried, random - passed) : DARK_LINK;
             if (ends.first == DARK_LINK) {
                 ends.first = end;
             } else {
@@ -129,7 +133,10 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
             }
             ends.gathered = event == 0u ? bringing_light(home, brings) : ends.gathered;
             if (event > 0u) {
-                return ends;
+                passed += max3(carried);
+                if (arrives || passed >= 1.0) {
+                    return ends;
+                }
             }
         }
         if (SPECULAR_LOBES == 0u || !follows || (material.flags & MATERIAL_UNLIT) != 0u) {
@@ -139,14 +146,15 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
         Passage passage = pass_on(triangle, material, hit.barycentric, met, direction, hit.distance, random.xyz);
         carried *= passage.weight;
         // Off a surface with both lobes few go on, which then carry as much as the others.
-        if (ends.first != DARK_LINK) {
-            float chance = min(max3(carried), 1.0);
+        if (ends.first != DARK_LINK && passed == 0.0) {
+            float chance = min(LEFT_FOR_MORE * max3(carried), 1.0);
             if (uniform_of(seed_of(seed, 11u)) >= chance) {
                 return ends;
             }
             carried /= chance;
         }
-        if (!passage.goes_on || max3(carried) < 1e-3) {
+        bool in_reach = passed == 0.0 || push.sky_shines != 0u || uniform_of(seed_of(seed, 9u)) < passed + MOST_FOLLOWING * max3(carried);
+        if (!passage.goes_on || max3(carried) < 1e-3 || !in_reach) {
             return ends;
         }
         origin = passage.origin;
