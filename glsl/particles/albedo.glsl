@@ -40,6 +40,23 @@ bool has_diffuse_lobe(Material material) {
     return max3(lobes_of_material(material, material_factors(material, vec4(1.0))).diffuse_albedo) > 0.0;
 }
 
+// Specular lobes from this roughness on are no targets of photons (is_glossy() of src/scene/facts.rs).
+const float BROAD_ROUGHNESS = 0.5;
+
+// What a broad specular lobe reflects of light from anywhere: of F = f0 + (f90 − f0)(1 − v·h)⁵ the means over both directions, cosine-weighted,
+//
+//   ⟨D V⟩ ≈ 1/(1 + α(0.232 + 1.213 α))        ⟨D V (1 − v·h)⁵⟩ ≈ 0.0028 α^−1.37        (fitted to sums over visible normals, within 0.003 for α >= 0.25)
+vec3 broad_albedo_at(Triangle triangle, Material material, vec2 place) {
+    if (material.roughness < BROAD_ROUGHNESS || (material.flags & MATERIAL_METALLIC_ROUGHNESS_TEXTURE) != 0u) {
+        return vec3(0.0);
+    }
+    Lobes lobes = lobes_of_material(material, textured_point(triangle, material, place));
+    float alpha = lobes.roughness * lobes.roughness;
+    float even = 1.0 / (1.0 + alpha * (0.232 + 1.213 * alpha));
+    float grazing = 0.0028 * pow(alpha, -1.37);
+    return clamp(lobes.f0 * (even - grazing) + lobes.f90 * grazing, 0.0, 1.0);
+}
+
 vec3 diffuse_albedo_at(Triangle triangle, Material material, vec2 place) {
     Lobes lobes = lobes_of_material(material, textured_point(triangle, material, place));
     return clamp(indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90), 0.0, 1.0);

@@ -14,6 +14,9 @@ layout(local_size_x = 64) in;
 // 1: links for scattering have second ends, and some lead behind specular surfaces.
 layout(constant_id = 0) const uint SECOND_ENDS = 0u;
 
+// 1: behind the diffuse albedos are those of broad specular lobes.
+layout(constant_id = 1) const uint BROAD_LOBES = 0u;
+
 layout(set = 0, binding = 0) uniform usamplerBuffer links;
 layout(set = 0, binding = 1) uniform usamplerBuffer scatter_links;
 layout(set = 0, binding = 2) uniform samplerBuffer radiance;   // of the bounce before
@@ -31,9 +34,21 @@ layout(push_constant, scalar) uniform Push {
 
 #include "particles/gathered.glsl"
 
+// What broad specular lobes send on of lamps' light (scatter.comp), which is not in the radiance that pictures are made of.
+vec3 broad_radiance(uint end) {
+    if (BROAD_LOBES == 0u || !ends_on_particle(end)) {
+        return vec3(0.0);
+    }
+    int other = int(particle_of_link(end));
+    vec4 given = texelFetch(emitted, other);
+    float area = texelFetch(matter, other).w;
+    vec3 albedo = texelFetch(matter, textureSize(matter) / 2 + other).rgb;
+    return albedo * given.rgb * (given.a * INVERSE_PI / max(area, 1e-30));
+}
+
 vec3 radiance_behind(uint link) {
     uint end = texelFetch(scatter_links, int(link)).x;
-    return ends_on_particle(end) && is_behind(end) ? vec3(channels_of_link(end)) * texelFetch(radiance, int(particle_of_link(end))).rgb : vec3(0.0);
+    return ends_on_particle(end) && is_behind(end) ? vec3(channels_of_link(end)) * (texelFetch(radiance, int(particle_of_link(end))).rgb + broad_radiance(end)) : vec3(0.0);
 }
 
 void main() {
@@ -45,7 +60,11 @@ void main() {
     vec4 self = texelFetch(matter, int(particle));
     vec3 gathered = vec3(0.0);
     [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
-        gathered += radiance_at_end(own * push.link_count + i);
+        uint link = own * push.link_count + i;
+        gathered += radiance_at_end(link);
+        if (BROAD_LOBES != 0u) {
+            gathered += broad_radiance(texelFetch(links, int(link)).x);
+        }
     }
     vec3 irradiance = texelFetch(emitted, int(particle)).rgb / max(self.w, 1e-30) + gathered * (PI / float(push.link_count));
     if (SECOND_ENDS != 0u) {

@@ -5,6 +5,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
+#include "lib/color.glsl"
 #include "lib/emissive_points.glsl"
 #include "lib/emitters.glsl"
 #include "lib/lights.glsl"
@@ -46,13 +47,18 @@ layout(push_constant, scalar) uniform Push {
     vec3 sky;                 // W/(m²·sr)
 } push;
 
-// The irradiance that links bring, W/m².
-vec3 irradiance_by_links(uint particle) {
+// The irradiance that links bring of the sky's light, W/m².
+vec3 sky_by_links(uint particle) {
     int first = int(particle * arrival_words());
     uvec3 steps = uvec3(texelFetch(arrivals, first).x, texelFetch(arrivals, first + 1).x, texelFetch(arrivals, first + 2).x);
-    vec3 radiance = push.sky * vec3(steps) / float(SKY_STEPS);
+    return push.sky * vec3(steps) * (PI / (push.links * float(SKY_STEPS)));
+}
+
+// And of emissive surfaces'.
+vec3 emission_by_links(uint particle) {
+    vec3 radiance = vec3(0.0);
     if (HAS_EMITTERS != 0u) {
-        first += int(EMISSION_WORD);
+        int first = int(particle * arrival_words() + EMISSION_WORD);
         for (int channel = 0; channel < 3; ++channel) {
             float whole = float(texelFetch(arrivals, first + 2 * channel).x);
             float parts = float(texelFetch(arrivals, first + 2 * channel + 1).x);
@@ -79,7 +85,7 @@ void main() {
     vec3 origin = offset_ray_origin(position, face);
     float disc = area * INVERSE_PI;
 
-    vec3 irradiance = irradiance_by_links(particle);
+    vec3 irradiance = sky_by_links(particle) + emission_by_links(particle);
     [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
         vec3 light = vec3(0.0);
         vec3 way = vec3(0.0);
@@ -120,5 +126,7 @@ void main() {
         uint first = 3u * particle;
         received += vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step;
     }
-    flux[particle] = vec4(is_finite(received) ? received : vec3(0.0), 0.0);
+    received = is_finite(received) ? received : vec3(0.0);
+    vec3 from_sky = sky_by_links(particle) * area;
+    flux[particle] = vec4(received, 1.0 - clamp(luminance(from_sky) / max(luminance(received), 1e-30), 0.0, 1.0));
 }

@@ -1,7 +1,8 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "particles/tallies.glsl"
 
-// Area and mean albedo of one particle, out of what was counted (catch.comp).
+// Area and mean albedo of one particle, out of what was counted (catch.comp), and behind those of all the albedo of broad specular lobes.
 
 layout(local_size_x = 64) in;
 
@@ -15,14 +16,17 @@ layout(push_constant, scalar) uniform Push {
     uint particle_count;
 } push;
 
-const float ALBEDO_STEPS = 4095.0;
-
 void main() {
     uint particle = gl_GlobalInvocationID.x;
     if (particle >= push.particle_count) {
         return;
     }
-    uvec4 tally = texelFetch(tallies, int(particle));
+    uvec4 tally = texelFetch(tallies, int(tally_texels() * particle));
     float area = float(tally.x) * (texelFetch(sums, int(push.triangle_count)).x / float(push.point_count));
-    matter[particle] = vec4(vec3(tally.yzw) / (ALBEDO_STEPS * max(float(tally.x), 1.0)), area);
+    float steps = ALBEDO_STEPS * max(float(tally.x), 1.0);
+    matter[particle] = vec4(vec3(tally.yzw) / steps, area);
+    if (BROAD_LOBES != 0u) {
+        uvec4 broad = texelFetch(tallies, int(tally_texels() * particle + 1u));
+        matter[push.particle_count + particle] = vec4(vec3(broad.xyz) / steps, 0.0);
+    }
 }

@@ -8,6 +8,9 @@
 //
 //   φ'_end += ρ·φ/n   for n links
 //
+// ρ is the albedo of the diffuse lobe; in the first step broad specular lobes pass their share of lamps' light on in the same directions, since no photon is sent to
+// them and no link from elsewhere meets lamps by way of them (it does the sky). Further on, links go on off specular lobes by themselves.
+//
 // Sums are whole numbers of steps, rounded to nearest, so that their order does not matter.
 
 layout(local_size_x = 64) in;
@@ -17,8 +20,11 @@ layout(constant_id = 0) const uint FIRST = 1u;
 // 1: links have second ends, off surfaces that reflect specularly too.
 layout(constant_id = 2) const uint SECOND_ENDS = 0u;
 
+// 1: behind the diffuse albedos are those of broad specular lobes.
+layout(constant_id = 3) const uint BROAD_LOBES = 0u;
+
 layout(set = 0, binding = 0) uniform samplerBuffer matter;
-layout(set = 0, binding = 1) uniform samplerBuffer emitted;            // W: what the first step passes on
+layout(set = 0, binding = 1) uniform samplerBuffer emitted;            // W: what the first step passes on; the share of it that is not the sky's
 layout(set = 0, binding = 2) uniform usamplerBuffer scatter_links;
 layout(set = 0, binding = 3) uniform samplerBuffer scale;
 layout(set = 0, binding = 4) uniform usamplerBuffer received;          // steps: what the others do; red, green, blue one by one
@@ -48,8 +54,13 @@ void main() {
     }
     float steps = texelFetch(scale, 0).x;
     vec3 flux;
+    vec3 albedo = texelFetch(matter, int(particle)).rgb;
     if (FIRST != 0u) {
-        flux = texelFetch(emitted, int(particle)).rgb;
+        vec4 given = texelFetch(emitted, int(particle));
+        flux = given.rgb;
+        if (BROAD_LOBES != 0u) {
+            albedo += given.a * texelFetch(matter, int(push.particle_count + particle)).rgb;
+        }
         total[particle] = vec4(flux, 0.0);
     } else {
         int first = 3 * int(particle);
@@ -58,7 +69,7 @@ void main() {
         total[particle] += vec4(flux, 0.0);
     }
     uint count = FIRST != 0u ? push.link_count : 1u;
-    uvec3 share = uvec3(texelFetch(matter, int(particle)).rgb * flux * (steps / float(count)) + 0.5);
+    uvec3 share = uvec3(albedo * flux * (steps / float(count)) + 0.5);
     if (share == uvec3(0u)) {
         return;
     }

@@ -22,6 +22,8 @@ pub struct Facts {
     /// Some surface has a specular lobe with a roughness below 0.5, or a roughness texture: what paths from the lights of the
     /// reference are sent for.
     pub glossy: bool,
+    /// Some surface has a specular lobe of a roughness of 0.5 or more, and no roughness texture.
+    pub broad: bool,
     /// Some surface transmits light.
     pub transmissive: bool,
     /// Some surface emits at some point that alpha and its emissive texture leave.
@@ -69,6 +71,7 @@ impl Scene {
             facts.diffuse |= has_diffuse_lobe(material);
             facts.specular |= has_specular_lobe(material);
             facts.glossy |= is_glossy(material);
+            facts.broad |= has_specular_lobe(material) && !is_glossy(material);
             facts.transmissive |= transmits(material);
         }
         for light in self.placed_lights().iter().filter(|light| light.intensity.iter().any(|&channel| channel > 0.0)) {

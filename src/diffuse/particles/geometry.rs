@@ -54,7 +54,7 @@ impl ParticleSpace {
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);
         graph.fill_buffer("diffuse/particles/place/clear-lost", lost, 0);
-        let stage = Stage { particle_count, placed, kept, moved, lost };
+        let stage = Stage { particle_count, broad_lobes: u32::from(scene.facts.broad), placed, kept, moved, lost };
         let matter = measure(graph, &stage);
         link(graph, scene, options, &stage);
         list(graph, &stage);

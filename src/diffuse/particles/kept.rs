@@ -65,7 +65,7 @@ impl Kept {
             sky_shines,
             second_ends,
             homes: graph.carried_buffer("particles.point_homes", POINTS as usize * count),
-            tallies: graph.carried_buffer("particles.tallies", 4 * count),
+            tallies: graph.carried_buffer("particles.tallies", 4 * (1 + scene.facts.broad as usize) * count),
             chunks,
             scatter_links: graph.carried_buffer("particles.scatter_links", ends * second_ends as usize),
             arrivals: graph.carried_buffer("particles.arrivals", arrival_words * count),

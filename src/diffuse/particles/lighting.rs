@@ -105,6 +105,7 @@ fn scatter(
         let pass = Scatter {
             first: u32::from(number == 0),
             second_ends: u32::from(scene.facts.specular),
+            broad_lobes: u32::from(number == 0 && scene.facts.broad),
             matter: space.matter.texels(FLOATS4),
             emitted: emitted.texels(FLOATS4),
             scatter_links: space.scatter_links.texels(WORD),
@@ -157,6 +158,7 @@ fn gather(
         for (number, chunk) in space.chunks.iter().enumerate() {
             let pass = Bounce {
                 second_ends: u32::from(scene.facts.specular),
+                broad_lobes: u32::from(scene.facts.broad),
                 links: chunk.links.texels(WORD),
                 scatter_links: space.scatter_links.texels(WORD),
                 radiance: radiance.texels(FLOATS4),
@@ -178,6 +180,7 @@ fn gather(
     }
     Lighting { emitted, scale, received: Vec::new(), radiance }
 }
+
 /// What photons bring off mirrors and through glass, in steps, and steps a watt; none where nothing is glossy or the sky alone shines.
 fn glints(
     graph: &mut Graph<'_>,

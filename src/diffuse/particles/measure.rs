@@ -8,10 +8,10 @@ use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::particles::{Catch, CatchPush, Matter, MatterPush, TouchedPoints, TouchedPointsPush};
 
-/// Albedo and area of each particle.
+/// Albedo and area of each particle; where some have one, the albedo of broad specular lobes behind those of all.
 pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4]> {
-    let Stage { particle_count, placed, kept, moved, lost } = stage;
-    let (particle_count, triangle_count) = (*particle_count, placed.triangle_count);
+    let Stage { particle_count, broad_lobes, placed, kept, moved, lost } = stage;
+    let (particle_count, broad_lobes, triangle_count) = (*particle_count, *broad_lobes, placed.triangle_count);
     let (homes, tallies, key) = (kept.homes, kept.tallies, kept.key());
     let point_count = POINTS * particle_count;
     if moved.is_none() {
@@ -20,6 +20,7 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
     let again = moved.as_ref().map(|moved| touched_points(graph, moved, homes, point_count));
     let [head, list] = AgainList::bind(again);
     let pass = Catch {
+        broad_lobes,
         scene_rays: placed.rays.clone(),
         particles: placed.group.clone(),
         sums: placed.sums.texels(FLOAT),
@@ -36,8 +37,9 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
         Some(AgainList { head, .. }) => pass.count("points", head, 3).threads_indirect(head, 0),
         None => pass.note("points", u64::from(point_count)).threads([point_count, 1, 1]),
     }
-    let matter = graph.buffer::<[f32; 4]>("particles.matter", particle_count as usize);
+    let matter = graph.buffer::<[f32; 4]>("particles.matter", ((1 + broad_lobes) * particle_count) as usize);
     let pass = Matter {
+        broad_lobes,
         tallies: tallies.texels(WORDS4),
         sums: placed.sums.texels(FLOAT),
         matter: matter.write(),

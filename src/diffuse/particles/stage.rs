@@ -8,6 +8,8 @@ use crate::graph::bindings::BufferRef;
 /// Of one declaration of the stage.
 pub(super) struct Stage {
     pub(super) particle_count: u32,
+    /// 1: some surface has a broad specular lobe.
+    pub(super) broad_lobes: u32,
     pub(super) placed: Placed,
     pub(super) kept: Kept,
     /// Present if only what this is about is done, on what memory holds of an earlier frame.

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::super::options::ParticlesOptions;
+use super::super::options::{ParticleTransport, ParticlesOptions};
 use super::{against_paths, options, settings, stages};
 use crate::gpu_tests::scenes::{add_light, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
@@ -74,4 +74,24 @@ fn coated_walls_lose_no_light() {
     let (ratio, error) = against_paths(&session, &scene, camera, all);
     println!("mean {ratio:.3}, blocks {error:.3}");
     assert!((ratio - 1.0).abs() < 0.03 && error < 0.08, "{ratio} {error}");
+}
+
+/// Rough metal is no target of photons, and yet what it reflects of a lamp's light lights the walls.
+#[test]
+fn rough_metal_passes_the_light_of_lamps_on() {
+    let session = Session::open();
+    let mut scene = closed_box(1.0, lambert([0.6; 3]));
+    let metal = Material { metallic: 0.75, roughness: 0.6, specular: 1.0, ..lambert([0.9; 3]) };
+    let metal = scene.add_material(metal).expect("a sound material");
+    let corners = [[-0.9, -0.9, -0.9], [-0.9, -0.9, 0.9], [0.9, -0.9, 0.9], [0.9, -0.9, -0.9]];
+    place(&mut scene, vec![quad(corners, metal)], DAffine3::IDENTITY);
+    let kind = LightKind::Spot { inner_angle: 0.3, outer_angle: 0.6 };
+    add_light(&mut scene, kind, DVec3::new(0.0, 0.7, 0.0), DVec3::NEG_Y, [1.0; 3]);
+    let camera = view(DVec3::new(0.0, 0.0, 0.9), DVec3::new(0.0, 0.1, -1.0));
+    for transport in [ParticleTransport::TwoWay, ParticleTransport::GatherOnly] {
+        let all = ParticlesOptions { bounces: None, transport, ..options(4000, 0) };
+        let (ratio, error) = against_paths(&session, &scene, camera.clone(), all);
+        println!("mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < 0.04 && error < 0.1, "{transport:?}: {ratio} {error}");
+    }
 }

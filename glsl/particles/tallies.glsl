@@ -1,0 +1,14 @@
+// What is counted of each particle, in whole numbers: one or two texels of four words.
+#ifndef PARTICLES_TALLIES
+#define PARTICLES_TALLIES
+
+// 1: some surface has a broad specular lobe.
+layout(constant_id = 0) const uint BROAD_LOBES = 0u;
+
+const float ALBEDO_STEPS = 4095.0;
+
+uint tally_texels() {
+    return 1u + BROAD_LOBES;
+}
+
+#endif
