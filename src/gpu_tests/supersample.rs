@@ -24,10 +24,11 @@ fn settings(technique: Technique, supersamples: u32) -> Settings {
     settings
 }
 
-/// A box on a floor under the sky, beside a mirror that shows both and a small lamp, by a point light.
-fn still_life() -> (Scene, CameraView) {
+/// A box on a floor under the sky, beside a mirror that shows both and a small lamp, by a point light. `specular`: how glossy the box is.
+fn still_life(specular: f32) -> (Scene, CameraView) {
     let mut scene = floor(4.0, lambert([0.6, 0.5, 0.4]));
-    let red = scene.add_material(lambert([0.5, 0.1, 0.1])).expect("sound");
+    let red = Material { specular, roughness: 0.4, ..lambert([0.5, 0.1, 0.1]) };
+    let red = scene.add_material(red).expect("sound");
     let mut faces = box_faces([0.4, 0.5, 0.4], [red; 6]);
     // Seen from outside.
     faces.iter_mut().for_each(|face| face.indices = vec![0, 2, 1, 0, 3, 2]);
@@ -94,7 +95,7 @@ const RAYS: &str = "specular/trace/supersample/rays";
 #[test]
 fn edges_are_the_means_over_their_pixels() {
     let session = Session::open();
-    let (scene, camera) = still_life();
+    let (scene, camera) = still_life(0.0);
     for technique in [Technique::Particles, Technique::Hybrid] {
         let truth = of_many_pixels(&session, &scene, technique, &camera);
         let centers = frame(&session, &scene, &settings(technique, 0), &camera);
@@ -133,13 +134,13 @@ fn direct_light_is_that_of_paths_all_over_pixels() {
         rmse(&pixels(&found.slots[&Slot::Direct]), &truth)
     });
     println!("rmse {centers:.4} to {found:.4}");
-    assert!(found < 0.3 * centers, "rmse {centers} to {found}");
+    assert!(found < 0.18 * centers, "rmse {centers} to {found}");
 }
 
 #[test]
 fn pixels_like_their_neighbours_keep_their_bits() {
     let session = Session::open();
-    let (scene, camera) = still_life();
+    let (scene, camera) = still_life(1.0);
     let [centers, found] =
         [0, 9].map(|supersamples| frame(&session, &scene, &settings(Technique::Particles, supersamples), &camera));
     let marked = work(&found, MARKS, "pixels");
@@ -180,10 +181,26 @@ fn nothing_is_traced_where_nothing_differs() {
     assert_eq!(pass.and_then(|pass| pass.skipped.as_deref()), Some("no light"));
 }
 
+/// From above a slab on a floor of the same kind, lit from above: only their depths differ.
+#[test]
+fn a_step_between_like_surfaces_is_marked() {
+    let session = Session::open();
+    let mut scene = floor(50.0, lambert([0.5; 3]));
+    let slab = scene.add_material(lambert([0.5; 3])).expect("sound");
+    let corners = [[-1.0, 0.8, -1.0], [-1.0, 0.8, 1.0], [1.0, 0.8, 1.0], [1.0, 0.8, -1.0]];
+    place(&mut scene, vec![quad(corners, slab)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::NEG_Y, [2.0; 3]);
+    let camera = view(DVec3::new(0.0, 5.0, 0.0), DVec3::ZERO);
+    let found = frame(&session, &scene, &settings(Technique::Direct, 9), &camera);
+    // 20 pixels a side, on both sides of the edge.
+    let marked = work(&found, MARKS, "pixels");
+    assert!((120..200).contains(&marked), "{marked} pixels");
+}
+
 #[test]
 fn a_lone_slot_and_a_second_run_have_the_same_bits() {
     let session = Session::open();
-    let (scene, camera) = still_life();
+    let (scene, camera) = still_life(1.0);
     let settings = settings(Technique::Particles, 9);
     let all = frame(&session, &scene, &settings, &camera);
     let mut renderer = session.renderer(&settings);
@@ -219,10 +236,11 @@ fn lists_grow_until_all_marked_pixels_fit() {
 #[test]
 fn light_that_no_method_knows_at_points_stays_that_of_centers() {
     let session = Session::open();
-    let (scene, camera) = still_life();
+    let (scene, camera) = still_life(1.0);
     let [centers, found] = [0, 9].map(|supersamples| {
         let mut settings = settings(Technique::Direct, supersamples);
         settings.methods.diffuse = DiffuseMethod::Rsm;
+        assert_eq!(settings.reduced()[0].contains("slot diffuse"), supersamples > 0);
         frame(&session, &scene, &settings, &camera)
     });
     let same = |slot| bits(&centers.slots[&slot]) == bits(&found.slots[&slot]);

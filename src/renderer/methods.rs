@@ -179,9 +179,12 @@ impl Settings {
             matches!(self.methods.filler(Slot::Diffuse), Some(Filler::Method(diffuse)) if diffuse.lights_mirrored);
         let offering: Vec<&str> =
             DIFFUSE.iter().filter(|entry| entry.lights_mirrored).map(|entry| entry.name).collect();
-        ((specular.inputs)(self).mirrored_light && !offered).then(|| {
+        let inputs = (specular.inputs)(self);
+        let centers =
+            if inputs.slots { ", and samples no more of the slot diffuse than centres of pixels" } else { "" };
+        (inputs.mirrored_light && !offered).then(|| {
             format!(
-                "{} shows what mirrors show by direct light alone: --diffuse {} offers no other, {} do",
+                "{} shows what mirrors show by direct light alone{centers}: --diffuse {} offers no other, {} do",
                 specular.name,
                 self.methods.name_of(Slot::Diffuse),
                 offering.join(" and ")
