@@ -49,6 +49,8 @@ pub(super) struct Shining<'a> {
     scene: &'a TracedScene,
     rays: SceneRays,
     lights: SceneLights,
+    /// Whether some points are first surfaces.
+    has_first: bool,
     /// What of it pixels see at each point.
     pub(super) light: BufferRef<[f32; 4]>,
 }
@@ -59,10 +61,11 @@ impl<'a> Shining<'a> {
         scene: &'a TracedScene,
         list: MirroredList,
         (level, number): (&str, usize),
+        has_first: bool,
     ) -> Shining<'a> {
         let light = graph.buffer(&format!("trace.{level}.{number}"), list.points.count());
         let (rays, lights) = (scene.rays(graph), scene.lights(graph));
-        Shining { names: (format!("specular/trace/{level}"), number), list, scene, rays, lights, light }
+        Shining { names: (format!("specular/trace/{level}"), number), list, scene, rays, lights, has_first, light }
     }
 
     /// The light of punctual lights: it is without noise. Returns whether there are any.
@@ -116,6 +119,7 @@ impl<'a> Shining<'a> {
             mirrored: self.list.group(),
             lobes: REFLECTION,
             adds_light: u32::from(found),
+            has_first: u32::from(self.has_first),
             light: self.sum(found),
             push: EmittersPush {
                 emitter_count: self.scene.emissive_count,

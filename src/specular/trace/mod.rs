@@ -73,7 +73,7 @@ impl Method for Trace {
             None => cx.graph.skip("specular/trace/walk", "no specular surface"),
             Some(walked) => {
                 for (number, band) in walked.bands.iter().enumerate() {
-                    let shining = light::Shining::new(cx.graph, scene, band.list, ("light", number));
+                    let shining = light::Shining::new(cx.graph, scene, band.list, ("light", number), false);
                     let found = shining.find_punctual(cx.graph);
                     if let Some(images) = reflected {
                         images.sum(cx, walked, number, found.then_some(shining.light));

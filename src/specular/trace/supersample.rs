@@ -42,7 +42,7 @@ pub(super) fn sample(
     for (number, first_row) in (0..height).step_by(rows as usize).enumerate() {
         let marked = mark(cx, reflected, (number, first_row, rows.min(height - first_row)), options);
         let (sums, list) = follow(cx, scene, marked, number, options);
-        let shining = Shining::new(cx.graph, scene, list, ("supersample/light", number));
+        let shining = Shining::new(cx.graph, scene, list, ("supersample/light", number), true);
         let found = shining.find_punctual(cx.graph);
         shining.find_others(cx.graph, found, options.light_samples);
         bands.push(Samples { marked, sums, list, light: shining.light });
