@@ -197,6 +197,28 @@ fn a_step_between_like_surfaces_is_marked() {
     assert!((120..200).contains(&marked), "{marked} pixels");
 }
 
+/// Light on the floor along a lamp that stands on it, where points on the lamp alone are noisy.
+#[test]
+fn light_beside_a_lamp_is_found_by_directions_too() {
+    let session = Session::open();
+    let mut scene = floor(3.0, lambert([0.6; 3]));
+    let lamp = scene.add_material(Material { emissive: [1.0; 3], ..lambert([0.0; 3]) }).expect("sound");
+    let corners = [[-2.0, 0.0, -0.2], [2.0, 0.0, 0.2], [2.0, 1.0, 0.2], [-2.0, 1.0, -0.2]];
+    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
+    let camera = view(DVec3::new(0.0, 1.5, 1.5), DVec3::new(0.0, 0.1, 0.2));
+    let truth = pixels(&of_many_pixels(&session, &scene, Technique::Particles, &camera).slots[&Slot::Direct]);
+    let [centers, found] = [0, 16].map(|supersamples| {
+        let settings = settings(Technique::Particles, supersamples);
+        pixels(&frame(&session, &scene, &settings, &camera).slots[&Slot::Direct])
+    });
+    let marked: Vec<usize> = (0..truth.len()).filter(|&pixel| centers[pixel] != found[pixel]).collect();
+    let of = |pixels: &[DVec3]| -> Vec<DVec3> { marked.iter().map(|&pixel| pixels[pixel]).collect() };
+    let [centers, found, truth] = [centers, found, truth].map(|pixels| of(&pixels));
+    let (ratio, gain) = (mean(&found) / mean(&truth), rmse(&centers, &truth) / rmse(&found, &truth));
+    println!("{} pixels: mean {ratio:.4}, error falls {gain:.2} times", marked.len());
+    assert!(marked.len() > 60 && (ratio - 1.0).abs() < 0.02 && gain > 3.0, "mean {ratio}, error falls {gain} times");
+}
+
 #[test]
 fn a_lone_slot_and_a_second_run_have_the_same_bits() {
     let session = Session::open();
