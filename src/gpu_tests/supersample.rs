@@ -238,7 +238,7 @@ fn a_lone_slot_and_a_second_run_have_the_same_bits() {
     }
 }
 
-/// More than an eighth of the pixels, for which there is room at first.
+/// More than a thirty-second of the pixels, for which there is room at first.
 #[test]
 fn lists_grow_until_all_marked_pixels_fit() {
     let session = Session::open();

@@ -12,8 +12,8 @@ use crate::shaders::trace::{Marks, MarksPush, Reflected, ReflectedPush};
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
-/// Pixels that a list has room for at first: an eighth.
-const SHARE: u32 = 8;
+/// Pixels that a list has room for at first: few, since each takes memory for the points of all its samples.
+const SHARE: u32 = 32;
 
 /// Marked pixels of some rows.
 #[derive(Clone, Copy)]
