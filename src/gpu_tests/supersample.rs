@@ -257,6 +257,22 @@ fn lists_grow_until_all_marked_pixels_fit() {
     }
 }
 
+/// Samples of a ring come to points of it and to what these reflect: more than there is room for as long as only first ones are counted.
+#[test]
+fn lists_grow_until_what_mirrors_show_fits() {
+    let session = Session::open();
+    let scene = builtin("ring");
+    let camera = scene.camera_view(None).expect("a camera");
+    let settings = settings(Technique::Direct, 9);
+    let first = frame(&session, &scene, &settings, &camera);
+    assert!(work(&first, RAYS, "points") > 11 * work(&first, MARKS, "pixels"));
+    // With the room that a larger picture takes.
+    let mut renderer = session.renderer(&settings);
+    renderer.render(&scene, &request(SIZE.map(|side| 3 * side), camera.clone(), &SHOWN)).expect("a frame");
+    let second = renderer.render(&scene, &request(SIZE, camera, &SHOWN)).expect("a frame");
+    assert_eq!(bits(&first.slots[&Slot::Specular]), bits(&second.slots[&Slot::Specular]));
+}
+
 #[test]
 fn light_that_no_method_knows_at_points_stays_that_of_centers() {
     let session = Session::open();
