@@ -2,8 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
-#include "lib/emissive_cells.glsl"
-#include "lib/emissive_points.glsl"
+#include "lib/emitter_hits.glsl"
 
 // What the sky adds to the slot `direct` of one pixel, estimated from directions drawn as the surface scatters (where it is diffuse
 // alone: by the cosine), and what emissive surfaces add that such a direction meets:
@@ -32,15 +31,7 @@ vec3 light_from(Receiver receiver, LobeSample drawn, vec3 direction) {
     if (FINDS_EMITTERS == 0u) {
         return vec3(0.0);
     }
-    Triangle triangle = load_triangle(triangles, hit.triangle);
-    Material material = load_material(materials, triangle.material);
-    float cosine = -dot(front_normal(triangle), direction);
-    cosine = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u ? abs(cosine) : cosine;
-    if (triangle.light_density <= 0.0 || cosine <= 0.0) {
-        return vec3(0.0);
-    }
-    float density = emissive_density(triangle, hit.barycentric) * push.density_scale * hit.distance * hit.distance / max(cosine, 1e-9);
-    return emissive_radiance(triangle, material, hit.barycentric) * power_heuristic(drawn.density, density);
+    return weighted_radiance(hit, direction, drawn.density, push.density_scale);
 }
 
 vec3 light_of_sample(Receiver receiver, Scattering scattering, vec4 random) {

@@ -3,7 +3,7 @@
 #include "groups/scene_lights.glsl"
 #include "groups/scene_rays.glsl"
 #include "direct/receiver.glsl"
-#include "lib/emissive_points.glsl"
+#include "lib/emitter_hits.glsl"
 #include "lib/emitters.glsl"
 
 // What emissive surfaces add to the slot `direct` of one pixel, estimated from points y of them, drawn by power:

@@ -24,12 +24,6 @@ Receiver load_receiver(ivec2 pixel, ivec2 size, float pixel_depth, vec3 shift) {
     return receiver;
 }
 
-// The weight of a sample that was drawn with `density`, where another one could have been drawn with `other`.
-float power_heuristic(float density, float other) {
-    float ratio = other / density;
-    return 1.0 / (1.0 + ratio * ratio);
-}
-
 void store_direct(ivec2 pixel, vec3 radiance) {
     if (ADDS != 0u) {
         radiance += texelFetch(before, pixel, 0).rgb;

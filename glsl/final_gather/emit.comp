@@ -140,7 +140,7 @@ void main() {
         if (hit.triangle == NO_TRIANGLE) {
             break;
         }
-        HitVertex vertex = vertex_of_hit(hit, origin, direction);
+        HitVertex vertex = vertex_of_hit(load_triangle(triangles, hit.triangle), hit, origin, direction, Footprint(vec4(0.0), vec4(0.0)));
         if (vertex.unlit) {
             break;
         }

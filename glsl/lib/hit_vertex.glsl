@@ -16,8 +16,8 @@ struct HitVertex {
     bool unlit;
 };
 
-HitVertex vertex_of_hit(Hit hit, vec3 origin, vec3 direction) {
-    Triangle triangle = load_triangle(triangles, hit.triangle);
+// `triangle`: that of the hit.
+HitVertex vertex_of_hit(Triangle triangle, Hit hit, vec3 origin, vec3 direction, Footprint footprint) {
     Material material = load_material(materials, triangle.material);
     vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
     vec3 face = front_normal(triangle);
@@ -26,7 +26,7 @@ HitVertex vertex_of_hit(Hit hit, vec3 origin, vec3 direction) {
     vec3 normal_texel = vec3(0.0, 0.0, 1.0);
     if ((material.flags & TEXTURES & MATERIAL_ALL_TEXTURES) != 0u) {
         vec4 sets = interpolated(corner_texcoords, triangle, weights);
-        apply_textures(point, normal_texel, material, triangle.material, sets, Footprint(vec4(0.0), vec4(0.0)));
+        apply_textures(point, normal_texel, material, triangle.material, sets, footprint);
     }
     HitVertex vertex;
     vertex.transmittance = vec3(1.0);

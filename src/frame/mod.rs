@@ -6,6 +6,7 @@
 pub(crate) mod camera;
 pub(crate) mod check;
 pub(crate) mod compose;
+pub(crate) mod direct_light;
 mod drawn_triangles;
 pub(crate) mod gbuffer;
 pub(crate) mod geometry;

@@ -164,7 +164,14 @@ fn what_is_said_to_be_written_whole_is() {
         }
         settings
     };
+    let supersampled = Settings::new(Technique::Direct, Preset::Draft).with(|settings| {
+        settings.methods.set(Slot::Direct, "traced").expect("a method");
+        settings.methods.set(Slot::Diffuse, "vpl").expect("a method");
+        settings.methods.set(Slot::Specular, "trace").expect("a method");
+        (settings.vpl.count, settings.trace.supersamples) = (32, 4);
+    });
     let frames = [
+        ("lights", supersampled),
         ("ring", hybrid(&[("photons.downscale", "2"), ("vpl.bounces", "2"), ("vpl.visibility", "traced")])),
         ("ring", hybrid(&[("photons.splat", "tiles"), ("vpl.visibility", "ism"), ("photons.trace", "march")])),
         ("ring", hybrid(&[("photons.splat", "discs"), ("photons.trace", "lines"), ("vpl.shading", "stencil")])),

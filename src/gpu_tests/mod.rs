@@ -60,6 +60,7 @@ pub(crate) mod session;
 mod skipping;
 mod splat_bench;
 mod sppm;
+mod supersample;
 mod tonemap;
 mod trace;
 mod traced_direct;

@@ -119,7 +119,7 @@ impl OnDevice<'_> {
         let OnDevice { scene, settings, store, data, set, traced } = self;
         let mut graph = Graph::new(store);
         let request = FrameRequest::new([8, 8], view(DVec3::ONE, DVec3::ZERO));
-        let shared = Shared::declare(&mut graph, scene, data, &request);
+        let shared = Shared::declare(&mut graph, scene, data, &request, settings);
         let inputs = Method::inputs(&settings.photons);
         let frame = shared.inputs(&mut graph, data, set, Some(traced), inputs, settings);
         let made = trace_all(&mut FrameCx::new(&mut graph, &frame, inputs), &settings.photons);

@@ -60,7 +60,7 @@ pub(super) fn probe(
     let traced =
         (inputs.rays != Rays::None).then(|| TracedScene::new(&device, scene).expect("the scene fits the device"));
     let mut graph = Graph::new(&mut store);
-    let shared = Shared::declare(&mut graph, scene, &data, request);
+    let shared = Shared::declare(&mut graph, scene, &data, request, settings);
     let frame = shared.inputs(&mut graph, &data, &set, traced.as_ref(), inputs, settings);
     let mut declared = Declared {
         gbuffer: shared.surface.clone(),

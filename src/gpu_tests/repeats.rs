@@ -81,7 +81,8 @@ fn a_resource_that_is_gone_is_made_again() {
         ("ring", small(Technique::Hybrid, &lists)),
         ("cornell-point", small(Technique::Path, &[("path.spp", "1")])),
         ("cornell-point", ambient),
-        ("ring", mirrors),
+        ("ring", mirrors.clone()),
+        ("ring", mirrors.with(|mirrors| mirrors.trace.supersamples = 4)),
     ];
     for (name, settings) in all {
         let scene = builtin(name);

@@ -15,6 +15,8 @@ pub(crate) struct Inputs {
     pub(crate) rays: Rays,
     /// The diffuse light at what mirrors show, if the method of the slot `diffuse` offers it.
     pub(crate) mirrored_light: bool,
+    /// All slots: it makes better ones of them ([`super::Method::refine`]).
+    pub(crate) slots: bool,
 }
 
 impl Inputs {
@@ -25,6 +27,7 @@ impl Inputs {
             light_flux: self.light_flux || other.light_flux,
             rays: self.rays.max(other.rays),
             mirrored_light: self.mirrored_light || other.mirrored_light,
+            slots: self.slots || other.slots,
         }
     }
 

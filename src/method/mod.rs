@@ -55,7 +55,7 @@ pub(crate) trait Method {
         0
     }
 
-    /// Declares what other methods have to know of before they declare their passes.
+    /// Declares what other methods have to know of before they declare their passes. The one of the slot `direct` has declared its own (`frame/direct_light.rs`).
     fn prepare(_: &mut FrameCx<'_, '_>, _: &Self::Options) {}
 
     /// Declares its passes in the order in which they run. Returns the slot's radiance in W/(m² sr), one texel a pixel; none where it is black.
@@ -63,4 +63,7 @@ pub(crate) trait Method {
     /// # Errors
     /// What the device does not allow.
     fn declare(cx: &mut FrameCx<'_, '_>, options: &Self::Options) -> Result<Option<ImageRef>, Error>;
+
+    /// Declares what it makes better, in place, of the slots that methods fill and the frame shows. For those that take [`Inputs::slots`].
+    fn refine(_: &mut FrameCx<'_, '_>, _: &Self::Options, _: &[(Slot, ImageRef)]) {}
 }

@@ -69,7 +69,7 @@ pub(crate) fn wanted_methods(
     settings: &Settings,
     facts: &Facts,
     set: &LightSet,
-    wants: impl Fn(Slot) -> bool,
+    wants: impl Fn(Slot) -> bool + Copy,
 ) -> Vec<Wanted> {
     let method = |slot: Slot| {
         let Some(Filler::Method(method)) = settings.methods.filler(slot) else { return None };
@@ -79,8 +79,17 @@ pub(crate) fn wanted_methods(
         Some(Wanted { method, inputs, skipped, shown: wants(slot) })
     };
     let all: Vec<Wanted> = Slot::ALL.into_iter().filter_map(method).collect();
-    let mirrored = all.iter().any(|method| method.shown && method.skipped.is_none() && method.inputs.mirrored_light);
-    let offers = |wanted: &Wanted| mirrored && wanted.method.lights_mirrored && wanted.skipped.is_none();
+    // What makes slots better takes part whichever of them is wanted, and looks at direct light.
+    let refined =
+        Slot::ALL.into_iter().any(wants) && all.iter().any(|method| method.skipped.is_none() && method.inputs.slots);
+    let mirrored =
+        |method: &Wanted| (method.shown || refined) && method.skipped.is_none() && method.inputs.mirrored_light;
+    let mirrored = all.iter().any(mirrored);
+    let offers = |wanted: &Wanted| {
+        wanted.skipped.is_none()
+            && (mirrored && wanted.method.lights_mirrored
+                || refined && (wanted.inputs.slots || wanted.method.slot == Slot::Direct))
+    };
     all.into_iter().filter(|wanted| wanted.shown || offers(wanted)).collect()
 }
 
@@ -101,16 +110,23 @@ pub(crate) struct Shared {
 
 impl Shared {
     /// Declares what the camera sees.
-    pub(crate) fn declare(graph: &mut Graph<'_>, scene: &Scene, data: &SceneData, request: &FrameRequest) -> Shared {
+    pub(crate) fn declare(
+        graph: &mut Graph<'_>,
+        scene: &Scene,
+        data: &SceneData,
+        request: &FrameRequest,
+        settings: &Settings,
+    ) -> Shared {
         let facts = scene.facts();
         let shows_emission = facts.emissive || scene.materials().iter().any(|material| material.unlit);
-        let sky_asked = facts.sky && request.slots.contains(&Slot::Emission);
+        let refined = settings.refines_slots();
+        let sky_asked = facts.sky && (refined || request.slots.contains(&Slot::Emission));
         let geometry = Geometry::import(graph, data);
         let view = View {
             camera: camera(&request.camera, request.size, data.origin),
             size: request.size,
             sky: scene.sky(),
-            emission: request.wants(Slot::Emission) && (shows_emission || sky_asked),
+            emission: (refined || request.wants(Slot::Emission)) && (shows_emission || sky_asked),
         };
         let surface = gbuffer(graph, data, &geometry, &facts, &view);
         let time = FrameTime { index: request.index, step: request.time_step };
@@ -157,27 +173,35 @@ pub(crate) fn declare(
     request: &FrameRequest,
 ) -> Result<Declared, Error> {
     let Prepared { scene, data, lights, traced, means } = *prepared;
-    let shared = Shared::declare(graph, scene, data, request);
+    let shared = Shared::declare(graph, scene, data, request, settings);
     let methods = wanted_methods(settings, &shared.facts, lights, |slot| request.wants(slot));
     if lights.lights.is_empty() && methods.iter().any(|wanted| wanted.inputs.light_views()) {
         graph.skip("light-views", "no light");
     }
     let frame = shared.inputs(graph, data, lights, traced, inputs_of(&methods), settings);
     let mut slots: Vec<(Slot, ImageRef)> = Vec::new();
-    if let (Some(emission), true) = (shared.surface.emission, settings.methods.filler(Slot::Emission).is_none()) {
-        slots.push((Slot::Emission, emission));
-    }
-    for Wanted { method, inputs, .. } in methods.iter().filter(|wanted| wanted.skipped.is_none()) {
+    let shows_emission = request.wants(Slot::Emission) && settings.methods.filler(Slot::Emission).is_none();
+    slots.extend(shared.surface.emission.filter(|_| shows_emission).map(|emission| (Slot::Emission, emission)));
+    let mut declare = |graph: &mut Graph<'_>, wanted: &Wanted| {
+        let method = wanted.method;
+        if let Some(reason) = wanted.skipped {
+            graph.skip(&format!("{}/{}", method.slot, method.name), reason);
+            return Ok(());
+        }
+        let image = (method.declare)(&mut FrameCx::new(graph, &frame, wanted.inputs), settings)?;
+        slots.extend(image.filter(|_| wanted.shown).map(|image| (method.slot, image)));
+        Ok::<(), Error>(())
+    };
+    let running = || methods.iter().filter(|wanted| wanted.skipped.is_none());
+    let (direct, others): (Vec<&Wanted>, Vec<&Wanted>) =
+        methods.iter().partition(|wanted| wanted.method.slot == Slot::Direct);
+    direct.into_iter().try_for_each(|wanted| declare(graph, wanted))?;
+    for Wanted { method, inputs, .. } in running() {
         (method.prepare)(&mut FrameCx::new(graph, &frame, *inputs), settings);
     }
-    for Wanted { method, inputs, skipped, shown } in methods {
-        match skipped {
-            Some(reason) => graph.skip(&format!("{}/{}", method.slot, method.name), reason),
-            None => {
-                let image = (method.declare)(&mut FrameCx::new(graph, &frame, inputs), settings)?;
-                slots.extend(image.filter(|_| shown).map(|image| (method.slot, image)));
-            }
-        }
+    others.into_iter().try_for_each(|wanted| declare(graph, wanted))?;
+    for Wanted { method, inputs, .. } in running().filter(|wanted| wanted.inputs.slots) {
+        (method.refine)(&mut FrameCx::new(graph, &frame, *inputs), settings, &slots);
     }
     for (&slot, pixels) in means.into_iter().flat_map(|means| &means.slots) {
         let fills = request.wants(slot) && matches!(settings.methods.filler(slot), Some(Filler::Estimator(_)));

@@ -14,6 +14,9 @@ use crate::vulkan::{Pipelines, VulkanError};
 /// Declares a method's passes with its options out of all settings.
 type Declare = fn(&mut FrameCx<'_, '_>, &Settings) -> Result<Option<ImageRef>, Error>;
 
+/// Likewise those that make other slots better.
+type Refine = fn(&mut FrameCx<'_, '_>, &Settings, &[(Slot, ImageRef)]);
+
 /// Makes an estimator on a device.
 type Open = fn(&Arc<Pipelines>) -> Result<Box<dyn Estimating>, VulkanError>;
 
@@ -31,6 +34,7 @@ pub(crate) struct MethodEntry {
     pub(crate) shows_lamps: bool,
     pub(crate) prepare: fn(&mut FrameCx<'_, '_>, &Settings),
     pub(crate) declare: Declare,
+    pub(crate) refine: Refine,
 }
 
 /// An estimator, likewise.
@@ -67,6 +71,7 @@ macro_rules! entries {
             shows_lamps: <crate::$slot::$module::$method as Method>::SHOWS_LAMPS,
             prepare: |cx, settings| <crate::$slot::$module::$method as Method>::prepare(cx, &settings.$module),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
+            refine: |cx, settings, slots| <crate::$slot::$module::$method as Method>::refine(cx, &settings.$module, slots),
         }),*]
     };
 }
@@ -151,6 +156,13 @@ impl Settings {
         matches!(self.methods.filler(Slot::Specular), Some(Filler::Method(method)) if (method.inputs)(self).mirrored_light)
     }
 
+    /// Whether a method makes all slots better that methods fill.
+    pub(super) fn refines_slots(&self) -> bool {
+        let refines =
+            |slot| matches!(self.methods.filler(slot), Some(Filler::Method(method)) if (method.inputs)(self).slots);
+        Slot::ALL.into_iter().any(refines)
+    }
+
     /// What the settings ask for and their methods do less of, a sentence each. A renderer that takes the settings warns of it.
     pub fn reduced(&self) -> Vec<String> {
         let methods = Slot::ALL.into_iter().filter_map(|slot| match self.methods.filler(slot) {
@@ -167,9 +179,12 @@ impl Settings {
             matches!(self.methods.filler(Slot::Diffuse), Some(Filler::Method(diffuse)) if diffuse.lights_mirrored);
         let offering: Vec<&str> =
             DIFFUSE.iter().filter(|entry| entry.lights_mirrored).map(|entry| entry.name).collect();
-        ((specular.inputs)(self).mirrored_light && !offered).then(|| {
+        let inputs = (specular.inputs)(self);
+        let centers =
+            if inputs.slots { ", and samples no more of the slot diffuse than centres of pixels" } else { "" };
+        (inputs.mirrored_light && !offered).then(|| {
             format!(
-                "{} shows what mirrors show by direct light alone: --diffuse {} offers no other; these do: {}",
+                "{} shows what mirrors show by direct light alone{centers}: --diffuse {} offers no other; these do: {}",
                 specular.name,
                 self.methods.name_of(Slot::Diffuse),
                 offering.join(", ")
@@ -210,9 +225,11 @@ impl Settings {
         }
     }
 
-    /// Where in a pixel the methods sample light: at its centre, unless an estimator does otherwise.
+    /// Where in a pixel the methods sample light: at its centre, unless an estimator does otherwise, or some method makes it the mean over the pixel where the two
+    /// differ.
     pub fn filter(&self) -> PixelFilter {
-        self.methods.estimator().map_or(PixelFilter::Center, |estimator| (estimator.filter)(self))
+        let center = if self.refines_slots() { PixelFilter::Box } else { PixelFilter::Center };
+        self.methods.estimator().map_or(center, |estimator| (estimator.filter)(self))
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod options;
 use ash::vk;
 
 use self::options::ShadowOptions;
+use crate::frame::direct_light::SharpLight;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method};
 use crate::scene::Facts;
@@ -57,6 +58,10 @@ impl Method for ShadowMap {
             .pass("direct/shadow-map/shade", pass)
             .note("lights", u64::from(lights.light_count))
             .pixels(buffer.size);
+        // The few views that stand for emissive surfaces and the sky throw sharp shadows which the scene does not have.
+        if cx.frame.set.punctual_count == lights.light_count {
+            cx.frame.offers.put(SharpLight(direct));
+        }
         Ok(Some(direct))
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod options;
 use ash::vk;
 
 use self::options::TracedOptions;
+use crate::frame::direct_light::SharpLight;
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
@@ -58,7 +59,11 @@ impl Method for Traced {
         let mut direct = None;
         match (scene.punctual_count == 0).then_some("no punctual light") {
             Some(reason) => graph.skip("direct/traced/punctual", reason),
-            None => direct = Some(frame.punctual(graph, direct)),
+            None => {
+                let punctual = frame.punctual(graph, direct);
+                cx.frame.offers.put(SharpLight(punctual));
+                direct = Some(punctual);
+            }
         }
         match wanted((!emissive).then_some("no emissive surface")) {
             Some(reason) => graph.skip("direct/traced/emitters", reason),

@@ -1,10 +1,9 @@
-//! Light at the points that mirrors and glass show, and the sum of it at each pixel.
+//! Light at listed points, and the sum of it at each pixel.
 
 use ash::vk;
 
-use super::options::TraceOptions;
-use super::walk::{Band, Walked};
-use crate::frame::mirrored::MirroredLight;
+use super::walk::Walked;
+use crate::frame::mirrored::{MirroredLight, MirroredList};
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef, ReadWriteBuffer, TexelBuffer};
@@ -16,33 +15,23 @@ const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 /// Of the points' own lobes: the light that they reflect.
 const REFLECTION: Lobes = Lobes { specular_lobes: 1, transmissive: 0 };
 
-/// Declares the passes; returns the slot.
-pub(super) fn light(
+/// Declares the passes that add up what pixels see; returns the slot. `light`: of each band's points; `diffuse`: the first lists of it.
+pub(super) fn resolve(
     graph: &mut Graph<'_>,
-    scene: &TracedScene,
     walked: &Walked,
+    light: &[BufferRef<[f32; 4]>],
     diffuse: Option<&MirroredLight>,
-    options: &TraceOptions,
 ) -> ImageRef {
     let size = walked.heads.size();
     let specular = graph.image("trace.specular", FLOATS, size);
-    for (number, band) in walked.bands.iter().enumerate() {
-        let light = Shining {
-            number,
-            band: *band,
-            scene,
-            rays: scene.rays(graph),
-            lights: scene.lights(graph),
-            light: graph.buffer(&format!("trace.light.{number}"), band.list.points.count()),
-        };
-        light.declare(graph, options.light_samples);
+    for (number, (band, light)) in walked.bands.iter().zip(light).enumerate() {
         let irradiance = diffuse.map(|diffuse| diffuse.irradiance[number]);
         let pass = Resolve {
             has_field: u32::from(irradiance.is_some()),
             heads: walked.heads.sampled(),
             shining: walked.shining.sampled(),
             points: band.list.points.texels(WORDS),
-            light: light.light.texels(FLOATS),
+            light: light.texels(FLOATS),
             irradiance: irradiance.map_or(TexelBuffer::absent(), |irradiance| irradiance.texels(FLOATS)),
             specular: if number == 0 { specular.start() } else { specular.modify() },
             push: ResolvePush { first_row: band.first_row },
@@ -52,65 +41,85 @@ pub(super) fn light(
     specular
 }
 
-/// What shines on the points of one band.
-struct Shining<'a> {
-    number: usize,
-    band: Band,
+/// What shines on the points of one list.
+pub(super) struct Shining<'a> {
+    /// Of the passes' level, and the list's number.
+    names: (String, usize),
+    list: MirroredList,
     scene: &'a TracedScene,
     rays: SceneRays,
     lights: SceneLights,
-    light: BufferRef<[f32; 4]>,
+    /// Whether some points are first surfaces.
+    has_first: bool,
+    /// What of it pixels see at each point.
+    pub(super) light: BufferRef<[f32; 4]>,
 }
 
-impl Shining<'_> {
-    /// The passes that the scene's lights need: each adds to what the one before it found.
-    fn declare(&self, graph: &mut Graph<'_>, samples: u32) {
-        let mut found = false;
-        let sky = self.scene.sky.iter().any(|&channel| channel > 0.0);
-        let kinds: [(&str, bool, &str); 3] = [
-            ("punctual", self.scene.punctual_count > 0, "no punctual light"),
-            ("emitters", self.scene.emissive_count > 0, "no emissive surface"),
-            ("sky", sky, "no sky"),
-        ];
-        for (kind, shines, reason) in kinds {
-            let name = format!("specular/trace/light/{kind}.{}", self.number);
-            if !shines {
-                graph.skip(&name, reason);
-                continue;
-            }
-            match kind {
-                "punctual" => self.punctual(graph, &name, found),
-                "emitters" => self.emitters(graph, &name, found, samples),
-                _ => self.sky(graph, &name, found, samples),
-            }
-            found = true;
+impl<'a> Shining<'a> {
+    pub(super) fn new(
+        graph: &mut Graph<'_>,
+        scene: &'a TracedScene,
+        list: MirroredList,
+        (level, number): (&str, usize),
+        has_first: bool,
+    ) -> Shining<'a> {
+        let light = graph.buffer(&format!("trace.{level}.{number}"), list.points.count());
+        let (rays, lights) = (scene.rays(graph), scene.lights(graph));
+        Shining { names: (format!("specular/trace/{level}"), number), list, scene, rays, lights, has_first, light }
+    }
+
+    /// The light of punctual lights: it is without noise. Returns whether there are any.
+    pub(super) fn find_punctual(&self, graph: &mut Graph<'_>) -> bool {
+        let shines = self.scene.punctual_count > 0;
+        match shines {
+            true => self.punctual(graph, &self.name("punctual")),
+            false => graph.skip(&self.name("punctual"), "no punctual light"),
         }
+        shines
+    }
+
+    /// That of emissive surfaces and the sky, added to what was `found`.
+    pub(super) fn find_others(&self, graph: &mut Graph<'_>, found: bool, samples: u32) {
+        let emissive = self.scene.emissive_count > 0;
+        match emissive {
+            true => self.emitters(graph, &self.name("emitters"), found, samples),
+            false => graph.skip(&self.name("emitters"), "no emissive surface"),
+        }
+        match self.scene.sky.iter().any(|&channel| channel > 0.0) {
+            true => self.sky(graph, &self.name("sky"), found || emissive, samples),
+            false => graph.skip(&self.name("sky"), "no sky"),
+        }
+    }
+
+    fn name(&self, kind: &str) -> String {
+        format!("{}/{kind}.{}", self.names.0, self.names.1)
     }
 
     fn sum(&self, found: bool) -> ReadWriteBuffer<[f32; 4]> {
         if found { self.light.read_write() } else { self.light.start_then_read() }
     }
 
-    fn punctual(&self, graph: &mut Graph<'_>, name: &str, found: bool) {
+    fn punctual(&self, graph: &mut Graph<'_>, name: &str) {
         let pass = Punctual {
             scene_rays: self.rays.clone(),
             scene_lights: self.lights.clone(),
-            mirrored: self.band.list.group(),
+            mirrored: self.list.group(),
             lobes: REFLECTION,
-            adds_light: u32::from(found),
-            light: self.sum(found),
+            adds_light: 0,
+            light: self.sum(false),
             push: PunctualPush { light_count: self.scene.punctual_count },
         };
-        graph.pass(name, pass).threads_indirect(self.band.list.arguments, 0);
+        graph.pass(name, pass).threads_indirect(self.list.arguments, 0);
     }
 
     fn emitters(&self, graph: &mut Graph<'_>, name: &str, found: bool, samples: u32) {
         let pass = Emitters {
             scene_rays: self.rays.clone(),
             scene_lights: self.lights.clone(),
-            mirrored: self.band.list.group(),
+            mirrored: self.list.group(),
             lobes: REFLECTION,
             adds_light: u32::from(found),
+            has_first: u32::from(self.has_first),
             light: self.sum(found),
             push: EmittersPush {
                 emitter_count: self.scene.emissive_count,
@@ -118,18 +127,18 @@ impl Shining<'_> {
                 density_scale: self.scene.emissive_density_scale,
             },
         };
-        graph.pass(name, pass).threads_indirect(self.band.list.arguments, 0);
+        graph.pass(name, pass).threads_indirect(self.list.arguments, 0);
     }
 
     fn sky(&self, graph: &mut Graph<'_>, name: &str, found: bool, samples: u32) {
         let pass = Sky {
             scene_rays: self.rays.clone(),
-            mirrored: self.band.list.group(),
+            mirrored: self.list.group(),
             lobes: REFLECTION,
             adds_light: u32::from(found),
             light: self.sum(found),
             push: SkyPush { sky: self.scene.sky, sample_count: samples },
         };
-        graph.pass(name, pass).threads_indirect(self.band.list.arguments, 0);
+        graph.pass(name, pass).threads_indirect(self.list.arguments, 0);
     }
 }

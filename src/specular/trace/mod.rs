@@ -1,16 +1,22 @@
 //! `trace`: the slot `specular` by rays that follow reflections and refractions (Whitted 1980; the ray tracing stage of Chang, Park & Ihm, 4.3).
 //!
-//! 1. `walk.rs`, before other methods declare their passes: rays from the surfaces of the picture list the points that mirrors and glass show.
+//! 1. `walk.rs`, before other methods declare their passes: rays from the surfaces of the picture list the points that mirrors and glass show; `light.rs`: rays from
+//!    the points to the lights.
 //! 2. A method of the slot `diffuse` says what diffuse light comes to these, if it does so (`frame/mirrored.rs`).
-//! 3. `light.rs`: rays from the points to the lights; the sum at each pixel.
+//! 3. `light.rs`: the sum at each pixel.
+//!
+//! If it supersamples, `marks.rs` lists pixels whose centres do not stand for all of them; `supersample.rs` sends rays through these from the camera, whose points
+//! are listed and lit like the others, and at the end puts the means into all slots.
 
 mod light;
+mod marks;
 pub(crate) mod options;
+mod supersample;
 mod walk;
 
 use self::options::TraceOptions;
-use crate::frame::mirrored::MirroredLight;
-use crate::graph::bindings::ImageRef;
+use crate::frame::mirrored::{MirroredLight, MirroredPoints};
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::slot::{CausticPaths, LightPaths, Slot};
@@ -27,12 +33,13 @@ impl Method for Trace {
         LightPaths { bounces: None, caustics: CausticPaths::Unmirrored }
     }
 
-    fn inputs(_: &TraceOptions) -> Inputs {
-        Inputs { rays: Rays::ToLights, mirrored_light: true, ..Inputs::default() }
+    fn inputs(options: &TraceOptions) -> Inputs {
+        let slots = options.supersamples > 0;
+        Inputs { rays: Rays::ToLights, mirrored_light: true, slots, ..Inputs::default() }
     }
 
-    fn shaders(_: &TraceOptions, _: bool) -> Vec<&'static str> {
-        vec![
+    fn shaders(options: &TraceOptions, _: bool) -> Vec<&'static str> {
+        let mut shaders = vec![
             "trace/glass",
             "trace/walk",
             "trace/arguments",
@@ -40,11 +47,15 @@ impl Method for Trace {
             "trace/emitters",
             "trace/sky",
             "trace/resolve",
-        ]
+        ];
+        if options.supersamples > 0 {
+            shaders.extend(["trace/reflected", "trace/marks", "trace/supersample", "trace/replace"]);
+        }
+        shaders
     }
 
-    fn skip(_: &TraceOptions, facts: &Facts) -> Option<&'static str> {
-        match (facts.specular, facts.lit()) {
+    fn skip(options: &TraceOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.specular || options.supersamples > 0, facts.lit()) {
             (false, _) => Some("no specular surface"),
             (_, false) => Some("no light"),
             _ => None,
@@ -53,15 +64,54 @@ impl Method for Trace {
 
     fn prepare(cx: &mut FrameCx<'_, '_>, options: &TraceOptions) {
         let Some(scene) = cx.rays() else { return };
-        let walked = walk::walk(cx, scene, options);
-        cx.frame.offers.put(walked.mirrored());
-        cx.frame.offers.put(walked);
+        let walked = cx.frame.facts.specular.then(|| walk::walk(cx, scene, options));
+        let supersamples = options.supersamples > 0;
+        let size = cx.frame.surface.size;
+        let reflected = walked.as_ref().filter(|_| supersamples).map(|_| marks::ReflectedImages::new(cx.graph, size));
+        let mut light = Vec::new();
+        match &walked {
+            None => cx.graph.skip("specular/trace/walk", "no specular surface"),
+            Some(walked) => {
+                for (number, band) in walked.bands.iter().enumerate() {
+                    let shining = light::Shining::new(cx.graph, scene, band.list, ("light", number), false);
+                    let found = shining.find_punctual(cx.graph);
+                    if let Some(images) = reflected {
+                        images.sum(cx, walked, number, found.then_some(shining.light));
+                    }
+                    shining.find_others(cx.graph, found, options.light_samples);
+                    light.push(shining.light);
+                }
+            }
+        }
+        let samples = if supersamples { supersample::sample(cx, scene, reflected, options) } else { Vec::new() };
+        let lists = walked.iter().flat_map(|walked| &walked.bands).map(|band| band.list);
+        let lists = lists.chain(samples.iter().map(|band| band.list)).collect();
+        cx.frame.offers.put(MirroredPoints { lists });
+        cx.frame.offers.put(Traced { walked, light, samples });
     }
 
-    fn declare(cx: &mut FrameCx<'_, '_>, options: &TraceOptions) -> Result<Option<ImageRef>, Error> {
+    fn declare(cx: &mut FrameCx<'_, '_>, _: &TraceOptions) -> Result<Option<ImageRef>, Error> {
         let offers = &cx.frame.offers;
-        let (Some(scene), Some(walked)) = (cx.rays(), offers.get::<walk::Walked>()) else { return Ok(None) };
-        let diffuse = offers.get::<MirroredLight>();
-        Ok(Some(light::light(cx.graph, scene, &walked, diffuse.as_deref(), options)))
+        let Some(traced) = offers.get::<Traced>() else { return Ok(None) };
+        let (diffuse, graph) = (offers.get::<MirroredLight>(), &mut *cx.graph);
+        let walked = traced.walked.as_ref();
+        Ok(walked.map(|walked| light::resolve(graph, walked, &traced.light, diffuse.as_deref())))
     }
+
+    fn refine(cx: &mut FrameCx<'_, '_>, _: &TraceOptions, slots: &[(Slot, ImageRef)]) {
+        let offers = &cx.frame.offers;
+        let Some(traced) = offers.get::<Traced>() else { return };
+        let diffuse = offers.get::<MirroredLight>();
+        let of_samples = diffuse.as_ref().map(|diffuse| &diffuse.irradiance[traced.light.len()..]);
+        supersample::replace(cx, &traced.samples, of_samples, slots);
+    }
+}
+
+/// What was found before other methods declared their passes.
+struct Traced {
+    /// Absent where nothing is specular.
+    walked: Option<walk::Walked>,
+    /// Direct light of each band's points.
+    light: Vec<BufferRef<[f32; 4]>>,
+    samples: Vec<supersample::Samples>,
 }

@@ -3,13 +3,14 @@
 use ash::vk;
 
 use super::options::TraceOptions;
-use crate::frame::mirrored::{MirroredList, MirroredPoints};
+use crate::frame::mirrored::MirroredList;
 use crate::frame::rays::TracedScene;
-use crate::graph::bindings::{ImageRef, SampledImage};
+use crate::graph::Graph;
+use crate::graph::bindings::{BufferRef, ImageRef, SampledImage};
 use crate::method::FrameCx;
 use crate::shaders::groups::Lobes;
 use crate::shaders::trace::{Arguments, ArgumentsPush, Glass, GlassPush, Walk, WalkPush};
-use crate::shaders::types::MirroredPoint;
+use crate::shaders::types::{MirroredPoint, Walking};
 
 /// Pixels whose points fit a list even if each has two for every ray.
 const PIXEL_RAYS: u32 = 1 << 20;
@@ -33,15 +34,8 @@ pub(super) struct Band {
     pub(super) list: MirroredList,
 }
 
-impl Walked {
-    /// What other methods know of it.
-    pub(super) fn mirrored(&self) -> MirroredPoints {
-        MirroredPoints { lists: self.bands.iter().map(|band| band.list).collect() }
-    }
-}
-
 /// Rows of a band, whole blocks of eight.
-fn band_rows([width, height]: [u32; 2], samples: u32) -> u32 {
+pub(super) fn band_rows([width, height]: [u32; 2], samples: u32) -> u32 {
     let pixels = PIXEL_RAYS / samples.max(1);
     (pixels / width.max(1) / 8 * 8).clamp(8, height.next_multiple_of(8))
 }
@@ -90,12 +84,8 @@ pub(super) fn walk(cx: &mut FrameCx<'_, '_>, scene: &TracedScene, options: &Trac
             push: WalkPush {
                 shift,
                 first_row,
-                sky: scene.sky,
-                sample_count: options.samples,
-                depth: options.depth,
-                capacity,
+                walking: walking(scene, options, options.samples, capacity),
                 lamps: u32::from(!frame.mirrored_lamps),
-                point_lights: u32::from(scene.punctual_count > 0),
             },
         };
         let pass = graph.pass(&format!("specular/trace/walk/rays.{number}"), pass);
@@ -103,15 +93,29 @@ pub(super) fn walk(cx: &mut FrameCx<'_, '_>, scene: &TracedScene, options: &Trac
         pass.pixels([size[0], row_count]);
         graph.grows(points, counts, 0);
         let arguments = graph.buffer::<u32>(&format!("trace.arguments.{number}"), 4);
-        let pass = Arguments {
-            counts: counts.texels(vk::Format::R32_UINT),
-            arguments: arguments.write(),
-            push: ArgumentsPush { capacity },
-        };
-        graph.pass(&format!("specular/trace/walk/arguments.{number}"), pass).groups([1, 1, 1]);
+        count(graph, &format!("specular/trace/walk/arguments.{number}"), counts, capacity, arguments);
         bands.push(Band { first_row, row_count, list: MirroredList { points, arguments } });
     }
     Walked { heads, shining, bands }
+}
+
+/// How ways are followed that may list so many points.
+pub(super) fn walking(scene: &TracedScene, options: &TraceOptions, sample_count: u32, capacity: u32) -> Walking {
+    let (sky, depth, point_lights) = (scene.sky, options.depth, u32::from(scene.punctual_count > 0));
+    Walking { sky, sample_count, depth, capacity, point_lights }
+}
+
+/// Declares the pass that says how many groups take what a list holds of what `counts` counts.
+pub(super) fn count(
+    graph: &mut Graph<'_>,
+    name: &str,
+    counts: BufferRef<u32>,
+    capacity: u32,
+    arguments: BufferRef<u32>,
+) {
+    let push = ArgumentsPush { capacity };
+    let pass = Arguments { counts: counts.texels(vk::Format::R32_UINT), arguments: arguments.write(), push };
+    graph.pass(name, pass).groups([1, 1, 1]);
 }
 
 #[cfg(test)]
