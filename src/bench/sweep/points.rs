@@ -64,7 +64,7 @@ impl Grid {
     pub fn points(&self) -> Result<Vec<Point>, PointsError> {
         let mut points = Vec::new();
         for (scene_index, scene) in self.scenes.iter().enumerate() {
-            for (combination, (series, values, settings)) in self.combinations(scene)?.into_iter().enumerate() {
+            for (combination, (series, (values, settings))) in self.combinations(scene)?.into_iter().enumerate() {
                 points.push(Point {
                     id: self.id(scene, &self.series[series], &settings),
                     scene: scene_index,
@@ -79,7 +79,7 @@ impl Grid {
     }
 
     /// Those of all series on one scene, with the number of the series.
-    fn combinations(&self, scene: &GridScene) -> Result<Vec<(usize, BTreeMap<String, Value>, Settings)>, PointsError> {
+    fn combinations(&self, scene: &GridScene) -> Result<Vec<(usize, Combination)>, PointsError> {
         let mut combinations = Vec::new();
         for (index, series) in self.series.iter().enumerate() {
             let of_series = series.combinations(&scene.set)?;
@@ -88,7 +88,7 @@ impl Grid {
                     return Err(PointsError::Twice { series: series.name.clone(), values: json!(values).to_string() });
                 }
             }
-            combinations.extend(of_series.into_iter().map(|(values, settings)| (index, values, settings)));
+            combinations.extend(of_series.into_iter().map(|combination| (index, combination)));
         }
         Ok(combinations)
     }
