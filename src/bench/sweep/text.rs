@@ -6,7 +6,7 @@ use super::lines::{Line, Mark, lines};
 use super::points::written;
 use super::result::Sweep;
 use crate::bench::report::{Pass as PassRow, Run};
-use crate::bench::tables::table;
+use crate::bench::tables::{TEXT_WIDTH, table};
 use crate::bench::units;
 
 /// All points of a scene, and below them the slopes of its lines; empty if there are none.
@@ -28,6 +28,10 @@ pub fn scene_text(sweep: &Sweep, scene: &str) -> String {
 /// The columns of a sweep that has references.
 const ERROR_COLUMNS: [&str; 4] = ["rrmse equal", "rrmse full", "flip", "Pareto"];
 
+/// Characters for each column of the grid's own, and how many of these a table of the usual width has room for.
+const OWN_COLUMN: u16 = 14;
+const OWN_COLUMNS_THAT_FIT: u16 = 4;
+
 fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     let columns: Vec<String> = sweep.grid.columns.keys().map(|name| format!("{name} ms")).collect();
     let mut header = vec!["series", "values"];
@@ -39,6 +43,9 @@ fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     }
     let numbers: Vec<usize> = (2..3 + sweep.grid.counts.len() + columns.len() + ERROR_COLUMNS.len() - 1).collect();
     let mut table = table(&header, &numbers);
+    // A grid that asks for many columns of its own has them side by side: numbers that are broken in two cannot be read.
+    let own = (sweep.grid.counts.len() + columns.len()) as u16;
+    table.set_width(TEXT_WIDTH + OWN_COLUMN * own.saturating_sub(OWN_COLUMNS_THAT_FIT));
     for line in lines {
         for mark in &line.marks {
             table.add_row(point_cells(sweep, mark));
