@@ -3,11 +3,11 @@
 use glam::{DAffine3, DVec3};
 
 use super::options::FinalGatherOptions;
-use crate::gpu_tests::against_paths::against_paths;
+use crate::gpu_tests::against_paths::{against_paths, leaks, passes_run};
 use crate::gpu_tests::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
-use crate::renderer::{DiffuseMethod, Frame, FrameRequest, PassTiming, Settings, Slot, Technique, Timing};
+use crate::renderer::{DiffuseMethod, Frame, FrameRequest, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, LightKind, Material, Scene};
 
 /// Few rays: blocks of pixels average.
@@ -83,27 +83,15 @@ fn pictures_are_those_of_paths() {
 /// Walls that are thicker than the discs of the estimate keep it out.
 #[test]
 fn light_stays_out_of_dark_rooms() {
-    let session = Session::open();
-    let scene = builtin("leak");
-    let mean = |camera: &str| {
-        let view = scene.camera_view(Some(camera)).expect("one of its cameras");
-        let frame = session.render(&scene, &settings(options()), &request([32, 24], view, &[Slot::Diffuse]));
-        let pixels = &frame.slots[&Slot::Diffuse].pixels;
-        pixels.iter().flatten().map(|&channel| f64::from(channel)).sum::<f64>() / (3 * pixels.len()) as f64
-    };
-    let lit = mean("lit");
-    assert!(lit > 0.0);
-    for (camera, most) in [("thin", 0.06), ("thick", 1e-3), ("sealed", 1e-3)] {
-        let leak = mean(camera) / lit;
-        println!("{camera}: {leak:.1e} of the lit hall's light");
-        assert!(leak < most, "{camera}: {leak:.1e} of the lit hall's light");
-    }
+    let found = leaks(&Session::open(), &settings(options()), [32, 24]);
+    println!("{found:?} of the lit hall's light");
+    let [thin, thick, sealed] = found;
+    assert!(thin < 0.06 && thick < 1e-3 && sealed < 1e-3, "{found:?} of the lit hall's light");
 }
 
-/// Full names of the passes of the method that ran.
+/// The passes of the method that ran.
 fn ran(frame: &Frame) -> Vec<String> {
-    let running = frame.timings.passes.iter().filter(|pass| pass.skipped.is_none());
-    running.map(PassTiming::full_name).filter(|name| name.starts_with("diffuse/final-gather")).collect()
+    passes_run(frame, "diffuse/final-gather")
 }
 
 #[test]

@@ -11,6 +11,7 @@ use super::geometry::ParticleSpace;
 use super::lighting::{self, Lighting};
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
+use crate::gpu_tests::against_paths::{leaks, passes_run};
 use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, request, view};
 use crate::gpu_tests::session::Session;
 use crate::graph::Graph;
@@ -144,26 +145,13 @@ fn pictures_are_those_of_paths() {
 
 #[test]
 fn light_stays_out_of_dark_rooms() {
-    let session = Session::open();
-    let scene = builtin("leak");
-    let mean = |camera: &str| {
-        let view = scene.camera_view(Some(camera)).expect("one of its cameras");
-        let frame = session.render(&scene, &settings(options(20_000, 2)), &request([64, 48], view, &[Slot::Diffuse]));
-        let pixels = &frame.slots[&Slot::Diffuse].pixels;
-        pixels.iter().flatten().map(|&channel| f64::from(channel)).sum::<f64>() / (3 * pixels.len()) as f64
-    };
-    let lit = mean("lit");
-    assert!(lit > 0.0);
-    for camera in ["thin", "thick", "sealed"] {
-        let leak = mean(camera) / lit;
-        assert!(leak < 1e-3, "{camera}: {leak:.1e} of the lit hall's light");
-    }
+    let found = leaks(&Session::open(), &settings(options(20_000, 2)), [64, 48]);
+    assert!(found.iter().all(|leak| *leak < 1e-3), "{found:?} of the lit hall's light");
 }
 
-/// Full names of the passes of the method that ran.
+/// The passes of the method that ran.
 fn ran(frame: &Frame) -> Vec<String> {
-    let running = frame.timings.passes.iter().filter(|pass| pass.skipped.is_none());
-    running.map(PassTiming::full_name).filter(|name| name.starts_with("diffuse/particles")).collect()
+    passes_run(frame, "diffuse/particles")
 }
 
 #[test]
