@@ -5,78 +5,113 @@
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "lib/ray_offset.glsl"
+#include "lib/sobol.glsl"
+#include "lib/traced_scene.glsl"
 #include "particles/again.glsl"
 #include "particles/albedo.glsl"
+#include "particles/facets.glsl"
 #include "particles/home.glsl"
 #include "particles/home_words.glsl"
-#include "particles/surface_points.glsl"
+#include "particles/shading_normal.glsl"
 #include "particles/tallies.glsl"
 
-// Measures what particles stand for: each of many points spread evenly over the surfaces is counted at the particle that links find it by, with its
-// albedo. So the area of a particle is that of its catchment, not an even share:
+// Finds the particle that stands for one facet (home.glsl, at its middle), by which links find it too, and adds the facet to what that particle stands for. So the
+// area of a particle is that of its catchment, not an even share:
 //
-//   ΔA_i = A/M · |{m : home(x_m) = i}|,   ρ_i = mean of ρ(x_m) over these       (M points)
+//   ΔA_i = Σ_{f : home(f) = i} A_f,   ρ_i = mean of ρ(x_f) over these, weighted by area
 //
-// and likewise of what broad specular lobes reflect, where there are any. Where something moved, the points that this may concern (touched_points.comp) are taken off the particles that stood for them, and counted again.
+// and likewise of what broad specular lobes reflect, where there are any. Areas are whole steps, rounded up or down at random, so that the smallest count as well.
+// Where something moved, the facets that this may concern (touched_points.comp) are taken off the particles that stood for them, and counted again.
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform samplerBuffer sums;
-layout(set = 0, binding = 1) buffer Tallies { uint tallies[]; };  // count, red, green, blue of each; broad lobes' red, green, blue, unused (tallies.glsl)
+layout(set = 0, binding = 0) uniform usamplerBuffer facets;
+layout(set = 0, binding = 1) buffer Tallies { uint tallies[]; };  // area, red, green, blue of each; broad lobes' red, green, blue, unused (tallies.glsl)
 layout(set = 0, binding = 2) buffer Lost { uint lost[]; };
-layout(set = 0, binding = 3) buffer Homes { uint homes[]; };      // of each point (home_words.glsl)
+layout(set = 0, binding = 3) buffer Homes { uint homes[]; };      // of each facet (home_words.glsl)
 layout(set = 0, binding = 4) uniform usamplerBuffer head;
 layout(set = 0, binding = 5) uniform usamplerBuffer again;
+layout(set = 0, binding = 6) uniform FacetSize { float facet_size; };
+layout(set = 0, binding = 7) uniform samplerBuffer areas;  // of all sides of each triangle: the same bits wherever it moves
 
 layout(push_constant, scalar) uniform Push {
     uint triangle_count;
-    uint point_count;
-    uint again;           // 1: those points alone that are listed
+    uint again;           // 1: those facets alone that are listed
 } push;
 
-void add_albedo(uint first, uvec3 albedo, uint once) {
-    atomicAdd(tallies[first], albedo.r * once);
-    atomicAdd(tallies[first + 1u], albedo.g * once);
-    atomicAdd(tallies[first + 2u], albedo.b * once);
+void add_albedo(uint first, uvec3 albedo, uint area) {
+    atomicAdd(tallies[first], albedo.r * area);
+    atomicAdd(tallies[first + 1u], albedo.g * area);
+    atomicAdd(tallies[first + 2u], albedo.b * area);
 }
 
-void count_point(uint home, uvec3 albedo, uvec3 broad, uint once) {
+void count_facet(uint home, uvec3 albedo, uvec3 broad, uint area) {
     uint first = 4u * tally_texels() * home;
-    atomicAdd(tallies[first], once);
-    add_albedo(first + 1u, albedo, once);
+    atomicAdd(tallies[first], area);
+    add_albedo(first + 1u, albedo, area);
     if (BROAD_LOBES != 0u) {
-        add_albedo(first + 4u, broad, once);
+        add_albedo(first + 4u, broad, area);
     }
+}
+
+uint triangle_of(uint facet) {
+    uint low = 0u;
+    uint high = push.triangle_count;
+    [[dont_unroll]] for (uint halving = 0u; halving < 32u && high - low > 1u; ++halving) {
+        uint middle = (low + high) / 2u;
+        if (texelFetch(facets, int(middle)).x <= facet) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
 }
 
 void main() {
-    uint number = push.again != 0u ? number_again(head, again, push.point_count) : gl_GlobalInvocationID.x;
-    if (number >= push.point_count) {
+    uint facet_count = texelFetch(facets, int(push.triangle_count)).x;
+    uint facet = push.again != 0u ? number_again(head, again, facet_count) : invocation_of_list();
+    if (facet >= facet_count) {
         return;
     }
-    SurfacePoint point = surface_point(sums, push.triangle_count, number, push.point_count, 2u);
-    Material material = load_material(materials, point.triangle.material);
-    if (ALPHA_MASKS != 0u && material.alpha_cutoff >= 0.0 && !is_covered(point.triangle, material, point.place)) {
-        homes[number] = NO_POINT;
-        return;
-    }
+    uint index = triangle_of(facet);
+    uvec2 record = texelFetch(facets, int(index)).xy;
+    Cuts cuts = unpack_cuts(record.y);
+    bool back = facet - record.x >= cuts.columns * cuts.rows;
+    vec3 middle = middle_of_facet(cuts, facet - record.x);
+    Triangle triangle = load_triangle(triangles, index);
+    Material material = load_material(materials, triangle.material);
+    vec3 front = front_normal(triangle);
+    vec3 face = back ? -front : front;
+    vec3 position = point_of_triangle(triangle, middle.xy, front);
+    vec3 normal = shading_normal(triangle, middle.xy, face);
+
     float spacing = spacing_of_particles();
-    vec3 start = offset_ray_origin(point.position, point.face);
-    Hit above = closest_hit(start, point.normal, 2.0 * LIFT * spacing);
+    vec3 start = offset_ray_origin(position, face);
+    Hit above = closest_hit(start, normal, 2.0 * LIFT * spacing);
     float free = above.triangle == NO_TRIANGLE ? 3e38 : above.distance;
-    uint home = home_of(point.position, point.normal, lifted(start, point.normal, point.normal, free, spacing));
-    uvec3 albedo = uvec3(diffuse_albedo_at(point.triangle, material, point.place) * ALBEDO_STEPS + 0.5);
+    uint home = home_of(position, normal, lifted(start, normal, normal, free, spacing));
+    uint before = homes[facet];
+    homes[facet] = home == NO_PARTICLE ? LOST_FACET : home;
+    // Alpha leaves nothing there; links may end beside its middle.
+    bool is_there = ALPHA_MASKS == 0u || material.alpha_cutoff < 0.0 || is_covered(triangle, material, middle.xy);
+    if (!is_there) {
+        return;
+    }
+    uvec3 albedo = uvec3(diffuse_albedo_at(triangle, material, middle.xy) * ALBEDO_STEPS + 0.5);
     uvec3 broad = uvec3(0u);
     if (BROAD_LOBES != 0u) {
-        broad = uvec3(broad_albedo_at(point.triangle, material, point.place) * ALBEDO_STEPS + 0.5);
+        broad = uvec3(broad_albedo_at(triangle, material, middle.xy) * ALBEDO_STEPS + 0.5);
     }
-    if (push.again != 0u && homes[number] < NO_POINT) {
-        count_point(homes[number], albedo, broad, 0xFFFFFFFFu);
+    float area = texelFetch(areas, int(index)).x / float(cuts.sides) * middle.z;
+    float random = float(seed_of(facet, 2u) >> 8) / 16777216.0;
+    uint steps = uint(area / area_step(facet_size) + random);
+    if (push.again != 0u && before != LOST_FACET) {
+        count_facet(before, albedo, broad, 0u - steps);
     }
-    homes[number] = home == NO_PARTICLE ? LOST_POINT : home;
     if (home == NO_PARTICLE) {
         atomicAdd(lost[0], 1u);
-        return;
+    } else {
+        count_facet(home, albedo, broad, steps);
     }
-    count_point(home, albedo, broad, 1u);
 }

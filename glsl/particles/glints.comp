@@ -10,7 +10,7 @@
 #include "lib/emitters.glsl"
 #include "lib/lights.glsl"
 #include "lib/sobol.glsl"
-#include "particles/home.glsl"
+#include "particles/found_home.glsl"
 #include "particles/specular.glsl"
 
 // One photon from a light to a glossy triangle, by the tables of light paths (src/frame/rays/targets.rs), and on along its specular lobe, and those of what it
@@ -116,7 +116,7 @@ void main() {
             return;
         }
         if (has_diffuse_lobe(next)) {
-            uint home = home_of_hit(met, dot(face, direction) < 0.0 ? face : -face, direction, hit.distance);
+            uint home = found_home(hit.triangle, hit.barycentric, dot(face, direction) > 0.0);
             uvec3 steps = uvec3(min(flux * push.steps_a_watt, vec3(1e8)) + 0.5);
             if (home != NO_PARTICLE && steps != uvec3(0u)) {
                 atomicAdd(glints[3u * home], steps.r);

@@ -118,9 +118,4 @@ uint home_of(vec3 position, vec3 normal, vec3 from) {
     return home_among(position, normal, from, SIMILAR_AT_LEAST, true);
 }
 
-// For a point that a ray of `length` along `direction` met.
-uint home_of_hit(vec3 position, vec3 normal, vec3 direction, float length) {
-    return home_of(position, normal, lifted(position, normal, -direction, length, spacing_of_particles()));
-}
-
 #endif

@@ -7,6 +7,7 @@
 #include "particles/home.glsl"
 #include "particles/lists.glsl"
 #include "particles/moved.glsl"
+#include "particles/places.glsl"
 
 // Lists the particles whose irradiance counts at points of one particle's catchment (the estimation lists of Chang et al. 3.2, at area particles): those
 // within reach, of similar normals, near the tangent plane, and seen by it where anything stands near. Always in the same order.
@@ -14,8 +15,8 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) buffer Lists { uint lists[]; };
-layout(set = 0, binding = 1) buffer Lengths { uint lengths[]; };
-layout(set = 0, binding = 2) buffer Counts { uint counts[]; };  // entries, entries for which there was no room
+layout(set = 0, binding = 1) buffer Lengths { uint lengths[]; };  // and reaches (lists.glsl)
+layout(set = 0, binding = 2) buffer Counts { uint counts[]; };    // entries, lists of a shorter reach, entries for which there was no room
 layout(set = 0, binding = 3) uniform usamplerBuffer touched;
 
 layout(push_constant, scalar) uniform Push {
@@ -28,27 +29,18 @@ const float LIST_SPACINGS = KERNEL_SPACINGS + 1.0;
 // Cosine between normals; share of the spacing off the tangent plane.
 const float LIST_SIMILAR = 0.8;
 const float LIST_ACROSS = 0.5;
+// Shorter reaches that are tried, and by how much each is shorter than what evenly spread particles would take.
+const uint SHORTENINGS = 3u;
+const float SHORTER = 0.97;
 // Slope from which entries are tested where nothing stands near.
 const float OFF_PLANE = 0.05;
 
-void main() {
-    uint entry = gl_GlobalInvocationID.x;
-    if (entry >= push.particle_count) {
-        return;
-    }
-    uint particle = particle_of_entry(entry);
-    if (push.again != 0u && (touched_bits(touched, particle) & LIST_TOUCHED) == 0u) {
-        return;
-    }
+// Lists those within `reach` for which there is room, and returns how many there are.
+uint list_within(uint first, vec3 position, vec3 normal, float reach, float across) {
     float spacing = spacing_of_particles();
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
-    uvec4 place = texelFetch(particle_entries, int(entry));
-    vec3 position = uintBitsToFloat(place.xyz);
-    vec3 normal = unpack_direction(place.w);
-    float reach = LIST_SPACINGS * spacing;
     ivec3 low = cell_of(position - reach, spacing);
     ivec3 size = cell_of(position + reach, spacing) - low + 1;
-    uint first = particle * LIST_CAPACITY;
     uint found = 0u;
     [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {
         ivec3 cell = low + ivec3(number % size.x, number / size.x % size.y, number / (size.x * size.y));
@@ -63,13 +55,39 @@ void main() {
             if (dot(way, way) > reach * reach || cell_of(other_position, spacing) != cell) {
                 continue;
             }
-            if (abs(above) <= LIST_ACROSS * spacing && dot(unpack_direction(other_place.w), normal) > LIST_SIMILAR) {
+            if (abs(above) <= across && dot(unpack_direction(other_place.w), normal) > LIST_SIMILAR) {
                 if (found < LIST_CAPACITY) {
                     lists[first + found] = other;
                 }
                 ++found;
             }
         }
+    }
+    return found;
+}
+
+void main() {
+    uint entry = gl_GlobalInvocationID.x;
+    if (entry >= push.particle_count) {
+        return;
+    }
+    uint particle = particle_of_entry(entry);
+    if (push.again != 0u && (touched_bits(touched, particle) & LIST_TOUCHED) == 0u) {
+        return;
+    }
+    float spacing = spacing_of_particles();
+    float own_spacing = spacing_of_particle(particle_places, particle);
+    uvec4 place = texelFetch(particle_entries, int(entry));
+    vec3 position = uintBitsToFloat(place.xyz);
+    vec3 normal = unpack_direction(place.w);
+    uint first = particle * LIST_CAPACITY;
+    uint reach_steps = REACH_STEPS;
+    uint found = list_within(first, position, normal, LIST_SPACINGS * own_spacing, LIST_ACROSS * own_spacing);
+    [[dont_unroll]] for (uint attempt = 0u; attempt < SHORTENINGS && found > LIST_CAPACITY; ++attempt) {
+        float share = SHORTER * sqrt(float(LIST_CAPACITY) / float(found));
+        reach_steps = max(uint(float(reach_steps) * share), 1u);
+        float reach = LIST_SPACINGS * own_spacing * float(reach_steps) / float(REACH_STEPS);
+        found = list_within(first, position, normal, reach, LIST_ACROSS * own_spacing);
     }
     uint listed = min(found, LIST_CAPACITY);
     vec3 from = above_entry(place, spacing);
@@ -84,9 +102,10 @@ void main() {
             ++kept;
         }
     }
-    lengths[particle] = kept;
+    lengths[particle] = list_word(kept, reach_steps);
     atomicAdd(counts[0], kept);
+    atomicAdd(counts[1], reach_steps < REACH_STEPS ? 1u : 0u);
     if (found > listed) {
-        atomicAdd(counts[1], found - listed);
+        atomicAdd(counts[2], found - listed);
     }
 }

@@ -7,12 +7,10 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer tallies;
-layout(set = 0, binding = 1) uniform samplerBuffer sums;
+layout(set = 0, binding = 1) uniform FacetSize { float facet_size; };
 layout(set = 0, binding = 2) writeonly buffer Matter { vec4 matter[]; };  // albedo, area in m²
 
 layout(push_constant, scalar) uniform Push {
-    uint triangle_count;
-    uint point_count;
     uint particle_count;
 } push;
 
@@ -22,7 +20,7 @@ void main() {
         return;
     }
     uvec4 tally = texelFetch(tallies, int(tally_texels() * particle));
-    float area = float(tally.x) * (texelFetch(sums, int(push.triangle_count)).x / float(push.point_count));
+    float area = float(tally.x) * area_step(facet_size);
     float steps = ALBEDO_STEPS * max(float(tally.x), 1.0);
     matter[particle] = vec4(vec3(tally.yzw) / steps, area);
     if (BROAD_LOBES != 0u) {

@@ -6,6 +6,13 @@
 layout(constant_id = 0) const uint BROAD_LOBES = 0u;
 
 const float ALBEDO_STEPS = 4095.0;
+// Steps of an area that is as large as a facet may be.
+const float AREA_STEPS = 128.0;
+
+// m²
+float area_step(float size) {
+    return size * size / AREA_STEPS;
+}
 
 uint tally_texels() {
     return 1u + BROAD_LOBES;

@@ -21,7 +21,7 @@ void main() {
     }
     uint fresh = 0u;
     uint first = particle * LIST_CAPACITY;
-    uint end = first + texelFetch(list_lengths, int(particle)).x;
+    uint end = first + length_of_list(texelFetch(list_lengths, int(particle)).x);
     [[dont_unroll]] for (uint place = first; place < end; ++place) {
         fresh += 1u - atomicOr(used[texelFetch(lists, int(place)).x], 1u);
     }

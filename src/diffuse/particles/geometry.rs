@@ -6,7 +6,7 @@ use super::links::link;
 use super::lists::list;
 use super::measure::measure;
 use super::moved::Moved;
-use super::options::ParticlesOptions;
+use super::options::{ParticleDensity, ParticlesOptions};
 use super::place::Placed;
 use super::stage::Stage;
 use crate::frame::rays::TracedScene;
@@ -26,6 +26,9 @@ pub(super) struct ParticleSpace {
     pub(super) turns: u32,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
+    /// First facet of each triangle and how it is cut; the particle that stands for each facet (glsl/particles/facets.glsl).
+    pub(super) facets: BufferRef<u32>,
+    pub(super) homes: BufferRef<u32>,
     /// Albedo and area of each.
     pub(super) matter: BufferRef<[f32; 4]>,
     pub(super) chunks: Vec<Chunk>,
@@ -48,9 +51,11 @@ impl ParticleSpace {
     /// Declares the stage.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
         let particle_count = count_of(scene, options);
-        let placed = Placed::declare(graph, scene, particle_count);
+        // Where particles lie would depend on where things are.
+        let adaptive = options.density == ParticleDensity::Adaptive && !scene.facts.animated;
+        let placed = Placed::declare(graph, scene, particle_count, adaptive);
         let kept = Kept::declare(graph, scene, options, particle_count);
-        let moved = scene.motion.as_ref().filter(|motion| kept.carry_on(graph, motion.from));
+        let moved = scene.motion.as_ref().filter(|motion| !adaptive && kept.carry_on(graph, motion.from));
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);
         graph.fill_buffer("diffuse/particles/place/clear-lost", lost, 0);
@@ -59,12 +64,14 @@ impl ParticleSpace {
         link(graph, scene, options, &stage);
         list(graph, &stage);
         let Stage { placed: Placed { rays, group, .. }, kept, .. } = stage;
-        let Kept { chunks, scatter_links, arrivals, lists, list_lengths, .. } = kept;
+        let Kept { facets, homes, chunks, scatter_links, arrivals, lists, list_lengths, .. } = kept;
         ParticleSpace {
             count: particle_count,
             turns: u32::from(scene.facts.normal_mapped),
             rays,
             group,
+            facets,
+            homes,
             matter,
             chunks,
             scatter_links,

@@ -5,8 +5,8 @@ use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, hash_of};
 
-/// Points by which the area of a particle is measured, for each.
-pub(super) const POINTS: u32 = 16;
+/// Facets for which there is room: for each particle, beside one for each side of a triangle. Some 18 fall to a particle, more where triangles are thin.
+const FACETS: u32 = 24;
 /// Particles whose links are in one buffer: 32 MiB of them at 16×16 a particle, well below the least limit of a buffer.
 const CHUNK: u32 = 32_768;
 /// As in glsl/particles/lists.glsl.
@@ -26,9 +26,13 @@ pub(super) struct Kept {
     pub(super) sky_shines: bool,
     /// Where the second ends of links for scattering begin.
     pub(super) second_ends: u32,
-    /// Which particle stands for each point that they are measured by.
+    /// First facet of each triangle and how it is cut (glsl/particles/facets.glsl), the number of facets behind all of them.
+    pub(super) facets: BufferRef<u32>,
+    /// Of a facet, at most, m.
+    pub(super) facet_size: BufferRef<f32>,
+    /// Which particle stands for each facet.
     pub(super) homes: BufferRef<u32>,
-    /// Points and albedos counted at each particle.
+    /// Areas and albedos added up at each particle.
     pub(super) tallies: BufferRef<u32>,
     pub(super) chunks: Vec<Chunk>,
     /// First ends; where something is specular, all second ends behind.
@@ -47,7 +51,7 @@ impl Kept {
         options: &ParticlesOptions,
         particle_count: u32,
     ) -> Kept {
-        let &ParticlesOptions { scatter, gather, emitter_samples, .. } = options;
+        let &ParticlesOptions { scatter, gather, emitter_samples, density, .. } = options;
         let count = particle_count as usize;
         let chunks = (0..).zip((0..particle_count).step_by(CHUNK as usize)).map(|(number, first)| {
             let count = CHUNK.min(particle_count - first);
@@ -60,11 +64,22 @@ impl Kept {
         let ends = if scene.facts.specular { 2 } else { 1 };
         let arrival_words = if scene.emissive_count > 0 { 9 } else { 3 };
         Kept {
-            rest: hash_of(&(scene.emission_key(), particle_count, scatter, gather, emitter_samples, sky_shines)),
+            rest: hash_of(&(
+                scene.emission_key(),
+                particle_count,
+                scatter,
+                gather,
+                emitter_samples,
+                sky_shines,
+                density,
+            )),
             surfaces: scene.surfaces_key(),
             sky_shines,
             second_ends,
-            homes: graph.carried_buffer("particles.point_homes", POINTS as usize * count),
+            facets: graph.carried_buffer("particles.facets", 2 * (scene.triangle_count as usize + 1)),
+            facet_size: graph.carried_buffer("particles.facet_size", 1),
+            homes: graph
+                .carried_buffer("particles.facet_homes", 2 * scene.triangle_count as usize + FACETS as usize * count),
             tallies: graph.carried_buffer("particles.tallies", 4 * (1 + scene.facts.broad as usize) * count),
             chunks,
             scatter_links: graph.carried_buffer("particles.scatter_links", ends * second_ends as usize),
@@ -85,13 +100,14 @@ impl Kept {
 
     /// Lets passes start from what memory holds, if it is all of what belongs to the surfaces of that key.
     pub(super) fn carry_on(&self, graph: &mut Graph<'_>, surfaces: u64) -> bool {
-        let &Kept { homes, tallies, scatter_links, arrivals, lists, list_lengths, .. } = self;
-        let all = [homes, tallies, scatter_links, arrivals, lists, list_lengths];
+        let &Kept { facets, homes, tallies, scatter_links, arrivals, lists, list_lengths, .. } = self;
+        let all = [facets, homes, tallies, scatter_links, arrivals, lists, list_lengths];
         let all: Vec<BufferRef<u32>> = all.into_iter().chain(self.chunks.iter().map(|chunk| chunk.links)).collect();
         let key = self.key_on(surfaces);
-        if !all.iter().all(|buffer| graph.finds(*buffer, key)) {
+        if !graph.finds(self.facet_size, key) || !all.iter().all(|buffer| graph.finds(*buffer, key)) {
             return false;
         }
+        graph.carry_on(self.facet_size, key);
         all.iter().for_each(|buffer| graph.carry_on(*buffer, key));
         true
     }

@@ -1,6 +1,6 @@
 //! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
 
-use super::formats::{FLOATS4, WORD};
+use super::formats::{FLOATS4, WORD, WORDS2};
 use super::geometry::ParticleSpace;
 use super::links::lobes_of;
 use super::options::{ParticleTransport, ParticlesOptions};
@@ -118,24 +118,28 @@ fn scatter(
         graph.pass(&format!("diffuse/particles/light/scatter.{number}"), pass).threads(threads);
         received.push(next);
     }
-    let radiance = radiance_of(graph, space, (total, scale), received.last().copied());
+    let radiance = radiance_of(graph, space, Emission { emitted, scale }, received.last().map(|last| (total, *last)));
     Lighting { emitted, scale, received, radiance }
 }
 
-/// What all particles send out that received `total`, and in one step more `received`.
+/// What all particles send out, of what lights gave them and of what they were scattered: all before the last step, and the last step's.
 fn radiance_of(
     graph: &mut Graph<'_>,
     space: &ParticleSpace,
-    (total, scale): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
-    received: Option<BufferRef<u32>>,
+    Emission { emitted, scale }: Emission,
+    scattered: Option<(BufferRef<[f32; 4]>, BufferRef<u32>)>,
 ) -> BufferRef<[f32; 4]> {
     let radiance = graph.buffer::<[f32; 4]>("particles.radiance", space.count as usize);
     let pass = Radiance {
-        scattered: u32::from(received.is_some()),
+        scattered: u32::from(scattered.is_some()),
+        particles: space.group.clone(),
         matter: space.matter.texels(FLOATS4),
-        total: total.texels(FLOATS4),
+        emitted: emitted.texels(FLOATS4),
+        total: scattered.map_or(emitted, |(total, _)| total).texels(FLOATS4),
         scale: scale.texels(FLOATS4),
-        received: received.unwrap_or(space.arrivals).texels(WORD),
+        received: scattered.map_or(space.arrivals, |(_, last)| last).texels(WORD),
+        list_lengths: space.list_lengths.texels(WORD),
+        lists: space.lists.texels(WORD),
         radiance: radiance.write(),
         push: RadiancePush { particle_count: space.count },
     };
@@ -151,7 +155,7 @@ fn gather(
     options: &ParticlesOptions,
     (Emission { emitted, scale }, bounces): (Emission, u32),
 ) -> Lighting {
-    let mut radiance = radiance_of(graph, space, (emitted, scale), None);
+    let mut radiance = radiance_of(graph, space, Emission { emitted, scale }, None);
     let scatter_count = options.scatter * options.scatter;
     let mut other = graph.buffer::<[f32; 4]>("particles.radiance.other", space.count as usize);
     for bounce in 0..bounces {
@@ -208,9 +212,10 @@ fn glints(
         scene_rays: space.rays.clone(),
         scene_lights: scene.lights(graph),
         light_targets: scene.targets(graph),
-        particles: space.group.clone(),
         lobes: lobes_of(scene),
         glints: glints.read_write(),
+        facets: space.facets.texels(WORDS2),
+        homes: space.homes.texels(WORD),
         push: GlintsPush {
             photon_count,
             emitter_count: scene.emitter_count,

@@ -10,7 +10,7 @@ use crate::shaders::particles::{List, ListPush};
 pub(super) fn list(graph: &mut Graph<'_>, stage: &Stage) {
     let Stage { particle_count, placed, kept, moved, .. } = stage;
     let (lists, lengths, key) = (kept.lists, kept.list_lengths, kept.key());
-    let counts = graph.buffer::<u32>("particles.list_counts", 2);
+    let counts = graph.buffer::<u32>("particles.list_counts", 3);
     graph.fill_buffer("diffuse/particles/lists/clear", counts, 0);
     let pass = List {
         scene_rays: placed.rays.clone(),
@@ -22,5 +22,8 @@ pub(super) fn list(graph: &mut Graph<'_>, stage: &Stage) {
         push: ListPush { particle_count: *particle_count, again: u32::from(moved.is_some()) },
     };
     let pass = graph.pass("diffuse/particles/lists/list", pass).leaves(lists, key).leaves(lengths, key);
-    pass.count("entries", counts, 0).count("left out", counts, 1).threads(stage.threads());
+    pass.count("entries", counts, 0)
+        .count("shortened", counts, 1)
+        .count("left out", counts, 2)
+        .threads(stage.threads());
 }

@@ -12,6 +12,15 @@ use crate::shaders::particles::{Again, AgainPush, Touched, TouchedPush};
 /// Local size of the passes that do something again.
 const GROUP: u32 = 64;
 
+/// Groups along x of a pass over a list, as in glsl/particles/again.glsl.
+const MOST_GROUPS: u32 = 32_768;
+
+/// Groups of a pass over so many numbers.
+pub(super) fn groups_of(count: u32) -> [u32; 3] {
+    let groups = count.div_ceil(GROUP);
+    [groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1]
+}
+
 /// What moved, on the device.
 pub(super) struct Moved {
     pub(super) triangles: BufferRef<u32>,

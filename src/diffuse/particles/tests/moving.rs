@@ -45,11 +45,11 @@ fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64, f64), step
         let moved = renderer.render(scene, &asked(camera)).expect("a frame");
         let whole = session.render(scene, &settings, &asked(camera));
         let [again, all] = [&moved, &whole].map(|frame| count(frame, "link/trace", "rays"));
-        let points = [&moved, &whole].map(|frame| count(frame, "measure/catch", "points"));
+        let facets = [&moved, &whole].map(|frame| count(frame, "measure/catch", "facets"));
         let difference = difference(&moved, &whole);
-        println!("{}: {again} links of {all}, points {points:?}, difference {difference:.1e}", scene.name);
+        println!("{}: {again} links of {all}, facets {facets:?}, difference {difference:.1e}", scene.name);
         assert!(again > 0 && (again as f64) < share * all as f64, "{again} links of {all}");
-        assert!(points[0] < points[1] / 2, "{points:?}");
+        assert!(facets[0] < facets[1] / 2, "{facets:?}");
         assert!(difference <= most, "{}: {difference}", scene.name);
         let still = renderer.render(scene, &asked(camera)).expect("a frame");
         assert_eq!(still.slots, moved.slots);

@@ -5,7 +5,7 @@
 #include "particles/home_words.glsl"
 #include "particles/moved.glsl"
 
-// Lists the points by which particles are measured (catch.comp) whose particle may be another one since something moved.
+// Lists the facets (catch.comp) whose particle may be another one since something moved.
 
 layout(local_size_x = 64) in;
 
@@ -13,22 +13,23 @@ layout(set = 0, binding = 0) uniform usamplerBuffer homes;
 layout(set = 0, binding = 1) uniform usamplerBuffer touched;
 layout(set = 0, binding = 2) buffer Head { uint head[]; };
 layout(set = 0, binding = 3) writeonly buffer Again { uint again[]; };
+layout(set = 0, binding = 4) uniform usamplerBuffer facets;
 
 layout(push_constant, scalar) uniform Push {
-    uint point_count;
+    uint triangle_count;
     uint capacity;
 } push;
 
 void main() {
-    uint point = gl_GlobalInvocationID.x;
+    uint facet = invocation_of_list();
     bool wanted = false;
-    if (point < push.point_count) {
-        uint home = texelFetch(homes, int(point)).x;
-        wanted = home == LOST_POINT || (home < NO_POINT && (touched_bits(touched, home) & TOUCHED) != 0u);
+    if (facet < texelFetch(facets, int(push.triangle_count)).x) {
+        uint home = texelFetch(homes, int(facet)).x;
+        wanted = home == LOST_FACET || (touched_bits(touched, home) & TOUCHED) != 0u;
     }
     uint place;
     APPEND(head[AGAIN_COUNT], wanted, place, {})
     if (wanted && place < push.capacity) {
-        again[place] = point;
+        again[place] = facet;
     }
 }
