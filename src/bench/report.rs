@@ -136,6 +136,9 @@ pub struct Run {
     /// All work counters of one frame, by the pass's full name and their own: `piece/pass.name`.
     pub counts: BTreeMap<String, u64>,
     /// What the image was compared with; null if it was not.
+    /// Each piece's by its images and buffers: `{"diffuse/particles": {"particles.links": …}}`.
+    #[serde(default)]
+    pub memory_parts: BTreeMap<String, BTreeMap<String, u64>>,
     pub reference: Option<Reference>,
     /// Errors by slot, `image` and `covered`, against the reference of the same light paths.
     pub error: Option<BTreeMap<String, ImageErrors>>,
