@@ -50,7 +50,7 @@ void count_point(uint home, uvec3 albedo, uvec3 broad, uint once) {
 }
 
 void main() {
-    uint number = push.again != 0u ? number_again(head, again, push.point_count) : gl_GlobalInvocationID.x;
+    uint number = push.again != 0u ? number_again(head, again, push.point_count) : invocation_of_list();
     if (number >= push.point_count) {
         return;
     }

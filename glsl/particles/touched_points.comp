@@ -20,7 +20,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 void main() {
-    uint point = gl_GlobalInvocationID.x;
+    uint point = invocation_of_list();
     bool wanted = false;
     if (point < push.point_count) {
         uint home = texelFetch(homes, int(point)).x;

@@ -2,7 +2,7 @@
 
 use super::formats::{FLOAT, WORD, WORDS4};
 use super::kept::POINTS;
-use super::moved::{AgainList, Moved};
+use super::moved::{AgainList, Moved, groups_of_list};
 use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
@@ -35,7 +35,7 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
     let pass = pass.count("lost", *lost, 0);
     match again {
         Some(AgainList { head, .. }) => pass.count("points", head, 3).threads_indirect(head, 0),
-        None => pass.note("points", u64::from(point_count)).threads([point_count, 1, 1]),
+        None => pass.note("points", u64::from(point_count)).groups(groups_of_list(point_count)),
     }
     let matter = graph.buffer::<[f32; 4]>("particles.matter", ((1 + broad_lobes) * particle_count) as usize);
     let pass = Matter {
@@ -60,6 +60,7 @@ fn touched_points(graph: &mut Graph<'_>, moved: &Moved, homes: BufferRef<u32>, p
             again: list.start(),
             push: TouchedPointsPush { point_count, capacity },
         };
-        graph.pass("diffuse/particles/measure/touched", pass).unordered().threads([point_count, 1, 1]);
+        let pass = graph.pass("diffuse/particles/measure/touched", pass).unordered();
+        pass.groups(groups_of_list(point_count));
     })
 }
