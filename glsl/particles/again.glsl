@@ -5,11 +5,12 @@
 // Words of the list's head: three say how many groups that takes, then how many numbers there are, and 1 where the list does not hold them.
 const uint AGAIN_COUNT = 3u;
 const uint ALL_AGAIN = 4u;
-// Groups along x.
+// Groups along x, and what each does. gl_WorkGroupSize is 1 where a header comes before its declaration.
 const uint MOST_GROUPS = 32768u;
+const uint LIST_GROUP = 64u;
 
 uint invocation_of_list() {
-    return gl_WorkGroupID.y * (MOST_GROUPS * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
+    return gl_WorkGroupID.y * (MOST_GROUPS * LIST_GROUP) + gl_GlobalInvocationID.x;
 }
 
 // The number that an invocation is to do, of `count` there are; others than these are none.

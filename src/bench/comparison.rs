@@ -158,7 +158,7 @@ pub(crate) mod tests {
         assert_eq!((&json["image"], &json["reference"]), (&"a.exr".into(), &"b.exr".into()));
         assert_eq!(json["size"], serde_json::json!([4, 3]));
         let image = json["errors"]["image"].as_object().expect("an object");
-        for name in ["rmse", "rrmse", "relmse", "psnr", "ssim", "flip", "mean_ratio", "bias"] {
+        for name in ["rmse", "rrmse", "block_rrmse", "relmse", "psnr", "ssim", "flip", "mean_ratio", "bias"] {
             assert!(image.contains_key(name), "{name} is not in {image:?}");
         }
         assert!(

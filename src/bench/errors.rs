@@ -80,8 +80,7 @@ impl<'a> References<'a> {
         let Some(images) = &finished.images else { return Ok(()) };
         let filter = settings.filter();
         let (equal, full) = (self.equal_to(settings, filter)?, self.get((None, CausticPaths::All, filter))?);
-        let (error, noise) = errors(images, &equal)?;
-        let (error_full, noise_full) = errors(images, &full)?;
+        let (equally, fully) = (errors(images, &equal)?, errors(images, &full)?);
         let bounces = settings.bounces();
         let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].into_iter();
         let filled = indirect.filter(|slot| settings.methods.fills(*slot));
@@ -99,10 +98,12 @@ impl<'a> References<'a> {
         finished.run = Run {
             reference: Some(compared(equal.spp, bounces, equal_caustics, slot_bounces)),
             reference_full: Some(compared(full.spp, None, CausticPaths::All, BTreeMap::new())),
-            error: Some(error),
-            error_full: Some(error_full),
-            noise: Some(noise),
-            noise_full: Some(noise_full),
+            error: Some(equally.errors),
+            error_full: Some(fully.errors),
+            noise: Some(equally.noise),
+            noise_full: Some(fully.noise),
+            block_noise: Some(equally.block_noise),
+            block_noise_full: Some(fully.block_noise),
             ..run
         };
         Ok(())
@@ -145,20 +146,27 @@ impl std::fmt::Debug for References<'_> {
     }
 }
 
-/// Errors, and the relative noise of what they are against, by part.
-type Errors = (BTreeMap<String, ImageErrors>, BTreeMap<String, f64>);
+/// Errors, and the relative noise of what they are against, of pixels and of blocks, by part.
+#[derive(Default)]
+struct Errors {
+    errors: BTreeMap<String, ImageErrors>,
+    noise: BTreeMap<String, f64>,
+    block_noise: BTreeMap<String, f64>,
+}
 
 /// The errors of every slot that the contender fills, of their sum, and of the image, in which what it does not fill is missing.
 fn errors(images: &SlotImages, reference: &Reference) -> Result<Errors, ErrorsUnknown> {
     let filled: Vec<Slot> = images.slots.keys().copied().collect();
     let covered = ColorImage::sum(images.image.size, images.slots.values());
     let covered_reference = reference.sum_of(&filled);
-    let (mut errors, mut noise) = (BTreeMap::new(), BTreeMap::new());
+    let mut found = Errors::default();
     let mut add = |part: &str, image: &ColorImage, truth: &ColorImage, slots: &[Slot]| {
         let compared = metrics::compare(image, truth);
         let compared = compared.map_err(|source| ErrorsUnknown::Images { part: part.to_owned(), source })?;
-        errors.insert(part.to_owned(), compared.errors);
-        noise.insert(part.to_owned(), Some(reference.noise_of(slots).rrmse).filter(|noise| noise.is_finite()));
+        found.errors.insert(part.to_owned(), compared.errors);
+        let [noise, block_noise] = [reference.noise_of(slots).rrmse, reference.block_noise_of(slots)];
+        found.noise.extend(noise.is_finite().then(|| (part.to_owned(), noise)));
+        found.block_noise.extend(block_noise.is_finite().then(|| (part.to_owned(), block_noise)));
         Ok(())
     };
     for (slot, image) in &images.slots {
@@ -168,8 +176,7 @@ fn errors(images: &SlotImages, reference: &Reference) -> Result<Errors, ErrorsUn
     }
     add(COVERED, &covered, &covered_reference, &filled)?;
     add(IMAGE, &images.image, &reference.image, &Slot::ALL)?;
-    let noise = noise.into_iter().filter_map(|(part, noise)| Some((part, noise?))).collect();
-    Ok((errors, noise))
+    Ok(found)
 }
 
 #[cfg(test)]
@@ -250,6 +257,10 @@ mod tests {
         close(noise["covered"], 0.03 / 9.0);
         close(noise["image"], 0.05 / 20.0);
         close(run.noise_full.as_ref().expect("compared")["image"], 0.05 / 60.0);
+        // Even images have the errors and the noise of their pixels in blocks too.
+        close(error["covered"].block_rrmse, 3.0 / 9.0);
+        close(run.block_noise.as_ref().expect("compared")["covered"], 0.03 / 9.0);
+        close(run.block_noise_full.as_ref().expect("compared")["image"], 0.05 / 60.0);
 
         let direct = runs[2].error.take().expect("compared");
         assert!(direct.keys().eq(["covered", "direct", "emission", "image"]), "{direct:?}");

@@ -129,10 +129,16 @@ pub struct Run {
     pub piece_alone: Vec<PieceAlone>,
     /// Median over the rounds of the serialised frame less the sum of its passes.
     pub unexplained_ms: f64,
+    /// Triangles of the scene.
+    #[serde(default)]
+    pub triangles: u64,
     /// Device memory held by the frame's pieces and the scene.
     pub memory_bytes: u64,
     /// The same by piece; `scene` is the scene itself.
     pub memory: BTreeMap<String, u64>,
+    /// Each piece's by its images and buffers: `{"diffuse/particles": {"particles.links": …}}`.
+    #[serde(default)]
+    pub memory_parts: BTreeMap<String, BTreeMap<String, u64>>,
     /// All work counters of one frame, by the pass's full name and their own: `piece/pass.name`.
     pub counts: BTreeMap<String, u64>,
     /// What the image was compared with; null if it was not.
@@ -147,6 +153,12 @@ pub struct Run {
     pub noise: Option<BTreeMap<String, f64>>,
     /// The same of `reference_full` and `error_full`.
     pub noise_full: Option<BTreeMap<String, f64>>,
+    /// `noise` of blocks of 8×8 pixels.
+    #[serde(default)]
+    pub block_noise: Option<BTreeMap<String, f64>>,
+    /// `noise_full` of blocks of 8×8 pixels.
+    #[serde(default)]
+    pub block_noise_full: Option<BTreeMap<String, f64>>,
 }
 
 /// One pass of a run.

@@ -128,6 +128,7 @@ pub fn rows(run: &Run) -> Vec<Row> {
     let compile = format!("first frame {first} ms on the host, of it upload {upload} ms, pipelines {pipelines} ms");
     rows.push(Row { ms: Some(run.compile_ms), ..Row::frame("compile").text(compile) });
     rows.push(Row::frame("memory").text(memory(run)));
+    rows.extend(memory_rows(run));
     rows.push(Row::frame("settings").text(settings(run)));
     rows
 }
@@ -204,11 +205,34 @@ fn work(pass: &Pass) -> String {
 
 /// The whole, then its parts from the largest.
 fn memory(run: &Run) -> String {
-    let mut parts: Vec<_> = run.memory.iter().filter(|(_, bytes)| **bytes > 0).collect();
-    parts.sort_by_key(|(_, bytes)| std::cmp::Reverse(**bytes));
-    let parts: Vec<String> =
-        parts.into_iter().map(|(piece, bytes)| format!("{piece} {}", units::bytes(*bytes))).collect();
-    let total = units::bytes(run.memory_bytes);
+    parts_of(run.memory_bytes, run.memory.iter().map(|(piece, bytes)| (piece.as_str(), *bytes)), 0)
+}
+
+/// A piece has a row of its own from this share of all memory on, and a part of it a name there from a hundredth of the piece on.
+const SHARE_WITH_A_ROW: f64 = 0.1;
+
+/// What the pieces that hold much hold.
+fn memory_rows(run: &Run) -> Vec<Row> {
+    let large = run.memory_parts.iter().filter(|(_, parts)| parts.len() > 1);
+    let rows = large.filter_map(|(piece, parts)| {
+        let total: u64 = parts.values().sum();
+        // Its own name, which most of them begin with, says nothing.
+        let own = format!("{}.", piece.rsplit('/').next().unwrap_or(piece));
+        let named = parts.iter().map(|(name, bytes)| (name.strip_prefix(&own).unwrap_or(name), *bytes));
+        let is_large = total as f64 >= SHARE_WITH_A_ROW * run.memory_bytes as f64;
+        is_large.then(|| Row::frame(&format!("memory of {piece}")).text(parts_of(total, named, total / 100)))
+    });
+    rows.collect()
+}
+
+/// A total, then its parts from the largest; those of at most `small` bytes together.
+fn parts_of<'a>(total: u64, parts: impl Iterator<Item = (&'a str, u64)>, small: u64) -> String {
+    let (mut named, others): (Vec<_>, Vec<_>) = parts.partition(|(_, bytes)| *bytes > small);
+    named.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+    let others: u64 = others.iter().map(|(_, bytes)| bytes).sum();
+    named.extend((others > 0).then_some(("others", others)));
+    let parts: Vec<String> = named.iter().map(|(name, bytes)| format!("{name} {}", units::bytes(*bytes))).collect();
+    let total = units::bytes(total);
     if parts.is_empty() { total } else { format!("{total}: {}", parts.join(", ")) }
 }
 
@@ -243,6 +267,7 @@ mod tests {
             "unchanged frame",
             "compile",
             "memory",
+            "memory of gbuffer",
             "settings",
         ];
         assert_eq!(labels, [&passes[..], &frame[..]].concat());
@@ -251,7 +276,8 @@ mod tests {
         assert_eq!(rows[5].cells(), ["skipped", "", "", "", "no specular surface"]);
         assert_eq!(rows[6].cells(), ["0.500", "", "", "2.4 %", ""]);
         assert_eq!(rows[12].text, "100 MiB: scene 80.0 MiB, gbuffer 20.0 MiB");
-        assert!(rows[13].text.contains("rsm.vpls=256"), "{}", rows[13].text);
+        assert_eq!(rows[13].text, "20.0 MiB: depth 12.0 MiB, normal 8.0 MiB, others 64 B");
+        assert!(rows[14].text.contains("rsm.vpls=256"), "{}", rows[14].text);
     }
 
     #[test]

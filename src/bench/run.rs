@@ -214,6 +214,7 @@ impl Contender {
             warmup: options.warmup,
             lead_in,
             load_ms: subject.load_ms,
+            triangles: subject.scene.facts().triangles,
             piece_alone,
             ..Run::default()
         });

@@ -23,6 +23,7 @@ pub(crate) struct Samples {
     unexplained_ms: Vec<f64>,
     passes: Vec<PassSamples>,
     memory: BTreeMap<String, u64>,
+    memory_parts: BTreeMap<String, BTreeMap<String, u64>>,
 }
 
 /// The measurements of one pass; passes of the same name count as one.
@@ -66,6 +67,7 @@ impl Samples {
         self.frame_ms.push(timings.gpu_ms);
         self.host_ms.push(timings.host_ms);
         self.memory = timings.memory_bytes.clone();
+        self.memory_parts = timings.memory_parts.clone();
     }
 
     /// A frame in which nothing changed, timed as a whole.
@@ -149,6 +151,7 @@ impl Samples {
             unexplained_ms: median(&self.unexplained_ms).unwrap_or_default(),
             memory_bytes: self.memory.values().sum(),
             memory: self.memory.clone(),
+            memory_parts: self.memory_parts.clone(),
             ..run
         }
     }
@@ -215,7 +218,10 @@ pub(crate) mod tests {
 
     fn frame(gpu_ms: f64, passes: Vec<PassTiming>) -> FrameTimings {
         let memory_bytes = BTreeMap::from([("scene".to_owned(), 80 << 20), ("gbuffer".to_owned(), 20 << 20)]);
-        FrameTimings { gpu_ms, host_ms: gpu_ms + 1.0, passes, memory_bytes, ..FrameTimings::default() }
+        let parts = [("gbuffer.depth", 12 << 20), ("gbuffer.normal", 8 << 20), ("gbuffer.counts", 64)];
+        let parts = parts.map(|(name, bytes)| (name.to_owned(), bytes)).into();
+        let memory_parts = BTreeMap::from([("gbuffer".to_owned(), parts)]);
+        FrameTimings { gpu_ms, host_ms: gpu_ms + 1.0, passes, memory_bytes, memory_parts, ..FrameTimings::default() }
     }
 
     /// Three rounds of a technique with a piece of two passes, one of which comes twice, and a skipped piece.

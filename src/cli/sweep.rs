@@ -79,6 +79,7 @@ pub(crate) fn run(args: &SweepArgs, invocation: &Invocation<'_>) -> Result<()> {
             for scene in &sweep.grid.scenes {
                 print_scene(&sweep, scene, invocation.terminal)?;
             }
+            print_growth(&sweep, invocation.terminal)?;
             sweep
         }
     };
@@ -167,6 +168,7 @@ fn measure_grid(args: &SweepArgs, path: &Path, json: Option<&Target>, invocation
     if let Some(target) = json.filter(|target| target.is_stream()) {
         result.write(target)?;
     }
+    print_growth(&result, terminal)?;
     invocation.check_validation(&context)?;
     Ok(result)
 }
@@ -248,6 +250,11 @@ fn open(scene: &GridScene, folder: &Path, options: &LoadOptions) -> Result<Opene
 
 fn print_scene(sweep: &Sweep, scene: &GridScene, terminal: &Terminal) -> Result<()> {
     let text = sweep::scene_text(sweep, &scene.name);
+    if text.is_empty() { Ok(()) } else { terminal.print(&format!("{text}\n")) }
+}
+
+fn print_growth(sweep: &Sweep, terminal: &Terminal) -> Result<()> {
+    let text = sweep::growth_text(sweep);
     if text.is_empty() { Ok(()) } else { terminal.print(&format!("{text}\n")) }
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::scenes::{builtin, request, settings};
 use super::session::Session;
+use crate::renderer::{Preset, Settings, Technique};
 use crate::scene::Scene;
 
 /// Device memory of a scene over the bytes of its vertices and indices as its file stores them, and of its decoded texels.
@@ -22,6 +23,27 @@ fn a_textured_scene_takes_little_more_than_its_bytes() {
     println!("textured: {found:.2}");
     // Half of its triangles' first vertices are copies (src/frame/drawn_triangles.rs).
     assert!(found <= 1.55, "{found:.2}");
+}
+
+/// Four bytes a link; links are in several buffers, which count as one. Pieces are the sums of their parts.
+#[test]
+fn memory_is_told_by_what_it_holds() {
+    let scene = builtin("cornell-point");
+    let mut settings = Settings::new(Technique::Particles, Preset::Draft);
+    for (key, value) in [("particles.count", "40000"), ("particles.gather", "8")] {
+        settings.set(key, value).expect("a setting and its value");
+    }
+    let view = scene.camera_view(None).expect("a view");
+    let frame = Session::open().render(&scene, &settings, &request([64, 64], view, &[]));
+    let (pieces, parts) = (&frame.timings.memory_bytes, &frame.timings.memory_parts);
+    for (piece, parts) in parts {
+        assert_eq!(parts.values().sum::<u64>(), pieces[piece], "{piece}");
+    }
+    let particles = &parts["diffuse/particles"];
+    assert_eq!(
+        (particles["particles.links"], particles["particles.scatter_links"]),
+        (4 * 8 * 8 * 40_000, 4 * 4 * 4 * 40_000)
+    );
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod direct;
 mod emitter_coverage;
 mod estimates;
 mod far_things;
+mod flicker;
 mod flux;
 mod gather;
 mod graph;

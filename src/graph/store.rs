@@ -1,6 +1,6 @@
 //! What stands between frames: the memory behind the graph's names, what it holds, and how it was last used.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use ash::vk;
@@ -277,13 +277,18 @@ impl Store {
     }
 
     /// Bytes that each piece's images and buffers hold.
-    pub(crate) fn memory_by_piece(&self) -> std::collections::BTreeMap<String, u64> {
-        let mut bytes = std::collections::BTreeMap::new();
-        for stored in self.images.values() {
-            *bytes.entry(stored.piece.clone()).or_default() += stored.image.bytes();
-        }
-        for stored in self.buffers.values() {
-            *bytes.entry(stored.piece.clone()).or_default() += stored.buffer.bytes();
+    pub(crate) fn memory_by_piece(&self) -> BTreeMap<String, u64> {
+        self.memory_by_part().into_iter().map(|(piece, parts)| (piece, parts.values().sum())).collect()
+    }
+
+    /// The same by their names as well; those that differ in a number at the end are one.
+    pub(crate) fn memory_by_part(&self) -> BTreeMap<String, BTreeMap<String, u64>> {
+        let images = self.images.iter().map(|(name, stored)| (name, &stored.piece, stored.image.bytes()));
+        let buffers = self.buffers.iter().map(|(name, stored)| (name, &stored.piece, stored.buffer.bytes()));
+        let mut bytes: BTreeMap<String, BTreeMap<String, u64>> = BTreeMap::new();
+        for (name, piece, held) in images.chain(buffers) {
+            let part = name.trim_end_matches(|c: char| c.is_ascii_digit()).strip_suffix('.').unwrap_or(name);
+            *bytes.entry(piece.clone()).or_default().entry(part.to_owned()).or_default() += held;
         }
         bytes
     }

@@ -62,6 +62,8 @@ pub struct FrameTimings {
     pub passes: Vec<PassTiming>,
     /// Bytes of device memory that each piece's images and buffers hold, by piece; `scene` is the scene itself.
     pub memory_bytes: BTreeMap<String, u64>,
+    /// The same, each piece's by its images and buffers; without what estimates hold and the scene.
+    pub memory_parts: BTreeMap<String, BTreeMap<String, u64>>,
 }
 
 impl FrameTimings {
@@ -73,6 +75,12 @@ impl FrameTimings {
         self.passes.extend(other.passes);
         for (piece, bytes) in other.memory_bytes {
             *self.memory_bytes.entry(piece).or_insert(0) += bytes;
+        }
+        for (piece, parts) in other.memory_parts {
+            let held = self.memory_parts.entry(piece).or_default();
+            for (name, bytes) in parts {
+                *held.entry(name).or_insert(0) += bytes;
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of images: how far an image is from a reference, by several measures that see different things.
 //!
-//! On linear radiance, over all pixels and channels: `rmse`, `rrmse`, `relmse`, the ratio of the mean luminances, the bias of each
+//! On linear radiance, over all pixels and channels: `rmse`, `rrmse`, the same of blocks of pixels, `relmse`, the ratio of the mean luminances, the bias of each
 //! channel. On display values, which is what people see: `psnr`, `ssim` and `flip`; there both images are exposed for the reference,
 //! so an image that is too bright counts as too bright. Sums are 64-bit and their order is fixed: the same images
 //! give the same bits on any number of cores.
@@ -20,6 +20,7 @@
 //! # }
 //! ```
 
+mod blocks;
 mod display;
 mod error;
 mod flip;
@@ -30,6 +31,8 @@ mod ssim;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::blocks::BLOCK_SIDE;
+pub(crate) use self::blocks::block_rms;
 pub use self::error::{MetricsError, Side};
 pub use self::heat_map::{HEAT_MAP_RANGE, HeatMap, heat_map};
 pub use self::radiance::{RadianceErrors, radiance_errors, rmse};
@@ -43,6 +46,9 @@ pub struct ImageErrors {
     /// `rmse` over the mean of the reference; infinite if the reference is black and the image is not.
     #[serde(with = "infinity")]
     pub rrmse: f64,
+    /// The same of the means of blocks of 8×8 pixels: what is wrong over some area, nearly without the noise of single pixels.
+    #[serde(with = "infinity", default)]
+    pub block_rrmse: f64,
     /// Mean of (x − r)²/(r² + ε²), with ε = 1 % of the mean of the reference; infinite where `rrmse` is.
     #[serde(with = "infinity")]
     pub relmse: f64,
@@ -79,6 +85,7 @@ pub fn compare(image: &ColorImage, reference: &ColorImage) -> Result<Comparison,
     let errors = ImageErrors {
         rmse,
         rrmse,
+        block_rrmse: blocks::block_rrmse(image, reference),
         relmse,
         psnr: display::psnr(&shown),
         ssim: ssim::ssim(size, &shown),

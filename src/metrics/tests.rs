@@ -49,6 +49,26 @@ fn constant_images_by_hand() {
 }
 
 #[test]
+fn blocks_average_over_eight_pixels_a_side() {
+    let reference = constant([20, 12], [2.0; 3]);
+    let of = |x: &ColorImage| compare(x, &reference).expect("sound").errors;
+    // What changes its sign from pixel to pixel is gone in blocks of even sides, which at the edges have 4 pixels a side.
+    let checks = image([20, 12], |index| [if (index % 20 + index / 20) % 2 == 0 { 2.5 } else { 1.5 }; 3]);
+    assert_near(of(&checks).rrmse, 0.25, 1e-12, "pixels");
+    assert_near(of(&checks).block_rrmse, 0.0, 1e-12, "blocks");
+    // One block of 4 × 8 pixels that is off by one, of 240 pixels; then the same squares over two blocks, each half off.
+    let off = |columns: std::ops::Range<usize>| {
+        let x = image([20, 12], |index| [if columns.contains(&(index % 20)) && index < 160 { 3.0 } else { 2.0 }; 3]);
+        of(&x)
+    };
+    assert_near(off(16..20).block_rrmse, (32.0_f64 / 240.0).sqrt() / 2.0, 1e-12, "one block");
+    assert_near(off(16..20).rrmse, off(16..20).block_rrmse, 1e-12, "a constant difference");
+    assert_near(off(6..10).block_rrmse, (2.0 * 64.0 * 0.0625_f64 / 240.0).sqrt() / 2.0, 1e-12, "two blocks");
+    let black = constant([20, 12], [0.0; 3]);
+    assert_eq!(compare(&reference, &black).expect("sound").errors.block_rrmse, f64::INFINITY);
+}
+
+#[test]
 fn both_are_exposed_for_the_reference() {
     // The reference's log-average is its 2; exposed for itself the image would look the same.
     let (x, r) = (constant([16, 16], [5.0; 3]), constant([16, 16], [2.0; 3]));

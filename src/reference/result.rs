@@ -7,6 +7,7 @@ use super::blocks::State;
 use super::key::ReferenceKey;
 use crate::estimator::Noise;
 use crate::image::ColorImage;
+use crate::metrics::block_rms;
 use crate::slot::{IMAGE, Slot};
 
 /// A reference: means over all of its samples.
@@ -66,6 +67,16 @@ impl Reference {
     pub fn noise_of(&self, slots: &[Slot]) -> Noise {
         let (images, differences) = (pixels(&self.slots, slots), pixels(&self.half_differences, slots));
         Noise::of_sum(&images, &differences)
+    }
+
+    /// The relative noise of blocks of 8×8 pixels of the sum of some slots, as `block_rrmse` counts errors.
+    pub fn block_noise_of(&self, slots: &[Slot]) -> f64 {
+        let differences = pixels(&self.half_differences, slots);
+        let value = |pixel: usize| {
+            std::array::from_fn(|channel| differences.iter().map(|slot| f64::from(slot[pixel][channel])).sum())
+        };
+        let (rms, mean) = (block_rms(self.image.size, value), self.noise_of(slots).mean);
+        if rms == 0.0 { 0.0 } else { rms / mean }
     }
 
     /// The sum of some slots.

@@ -191,6 +191,7 @@ impl Renderer {
             pipeline_ms: executed.pipeline_ms,
             passes: executed.passes,
             memory_bytes,
+            memory_parts: self.store.memory_by_part(),
         };
         let frame = Frame { size, image, slots, display, estimate: None, timings };
         Ok(Drawn { frame, outgrown: std::mem::take(&mut executed.outgrown), fault })

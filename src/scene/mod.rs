@@ -55,6 +55,7 @@ mod mesh;
 mod rays;
 mod sampling;
 mod shining;
+mod split;
 mod tangents;
 pub(crate) mod triangle_cells;
 mod world;

@@ -66,7 +66,7 @@ fn the_table_has_a_row_for_each_layer_of_both() {
         let line = table.lines().find(|line| line.split_whitespace().next() == Some(layer));
         line.map(|line| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
     };
-    let header = "layer rmse rrmse relmse psnr dB ssim flip mean ratio noise rmse";
+    let header = "layer rmse rrmse 8×8 relmse psnr dB ssim flip mean ratio noise rmse";
     assert_eq!(row("layer").map(|cells| cells.join(" ")).as_deref(), Some(header), "{table}");
     let image = row("image").expect("a row");
     assert_eq!(image[..3], ["image", "0.500", "0.500"], "{table}");

@@ -54,7 +54,15 @@ fn point_count(toml: &str, path: &str) -> usize {
 
 #[test]
 fn the_grids_that_are_checked_in_are_sound() {
-    for (name, count) in [("quick", 6), ("rsm-path", 30), ("quyen", 120), ("chang", 28)] {
+    let counts = [
+        ("quick", 6),
+        ("rsm-path", 30),
+        ("quyen", 120),
+        ("chang", 30),
+        ("particles-growth", 44),
+        ("particles-growth-scenes", 14),
+    ];
+    for (name, count) in counts {
         let path = format!("sweeps/{name}.toml");
         let toml = fs::read_to_string(root().join(&path)).expect("it is checked in");
         assert_eq!(point_count(&toml, &path), count, "{path}");
@@ -65,7 +73,7 @@ fn the_grids_that_are_checked_in_are_sound() {
 fn the_documented_grid_is_sound_and_its_defaults_are_right() {
     let page = fs::read_to_string(root().join("docs/sweeps.md")).expect("it is checked in");
     let toml = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block of TOML");
-    assert_eq!(point_count(toml, "docs/sweeps.md"), 40);
+    assert_eq!(point_count(toml, "docs/sweeps.md"), 50);
 
     let optional = ["size", "frames", "warmup", "interleave", "compare", "entry", "metric", "preset"];
     let named = |line: &&str| !optional.iter().any(|key| line.starts_with(&format!("{key} =")));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::grid::Compare;
+use super::grid::{Compare, Metric};
 use super::lines::{Mark, lines};
 use super::points::written;
 use super::result::Sweep;
@@ -22,7 +22,18 @@ const MEASURED: [&str; 8] = [
     "memory_bytes",
     "pareto",
 ];
-const ERRORS: [&str; 8] = ["rmse", "rrmse", "relmse", "psnr_db", "ssim", "flip", "mean_ratio", "reference_rrmse"];
+const ERRORS: [&str; 10] = [
+    "rmse",
+    "rrmse",
+    "block_rrmse",
+    "relmse",
+    "psnr_db",
+    "ssim",
+    "flip",
+    "mean_ratio",
+    "reference_rrmse",
+    "reference_block_rrmse",
+];
 
 /// All points, scene by scene. A number that a point does not have is empty; so is a setting that its series leaves alone.
 pub fn csv(sweep: &Sweep) -> String {
@@ -53,16 +64,19 @@ fn cells(sweep: &Sweep, keys: &BTreeSet<&str>, mark: &Mark<'_>) -> Vec<String> {
     cells.extend([run.memory_bytes.to_string(), mark.pareto.to_string()]);
     for compare in [Compare::Equal, Compare::Full] {
         cells.extend(error_cells(sweep.grid.errors(run, compare)));
-        cells.push(sweep.grid.noise(run, compare).map(|noise| noise.to_string()).unwrap_or_default());
+        for metric in [Metric::Rrmse, Metric::Blocks] {
+            let noise = sweep.grid.noise(run, compare, metric);
+            cells.push(noise.map(|noise| noise.to_string()).unwrap_or_default());
+        }
     }
     cells.extend(sweep.grid.counts.values().map(|name| run.counts.get(name).map(u64::to_string).unwrap_or_default()));
     cells
 }
 
-fn error_cells(errors: Option<&ImageErrors>) -> [String; 7] {
+fn error_cells(errors: Option<&ImageErrors>) -> [String; 8] {
     let Some(errors) = errors else { return Default::default() };
-    let ImageErrors { rmse, rrmse, relmse, psnr, ssim, flip, mean_ratio } = errors;
-    [rmse, rrmse, relmse, psnr, ssim, flip, mean_ratio].map(f64::to_string)
+    let ImageErrors { rmse, rrmse, block_rrmse, relmse, psnr, ssim, flip, mean_ratio } = errors;
+    [rmse, rrmse, block_rrmse, relmse, psnr, ssim, flip, mean_ratio].map(f64::to_string)
 }
 
 #[cfg(test)]

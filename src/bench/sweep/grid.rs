@@ -40,6 +40,9 @@ pub struct Grid {
     /// Further columns: counters of work in one frame, each by its full name, `piece/pass.name`.
     #[serde(default)]
     pub counts: BTreeMap<String, String>,
+    /// Scenes over which exponents of the columns are told, by what these scenes differ in.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub growth: BTreeMap<GrowsWith, Vec<String>>,
     /// What others have measured, shown beside the points that it belongs to.
     #[serde(default)]
     pub published: Vec<Published>,
@@ -65,9 +68,16 @@ pub struct GridScene {
     /// Width and height in pixels; `None`: the grid's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[u32; 2]>,
+    /// How often every triangle is cut into four.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub split: u32,
     /// Settings that belong to the scene; what a series sets or varies comes after.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, Value>,
+}
+
+fn is_zero(count: &u32) -> bool {
+    *count == 0
 }
 
 /// Times that somebody published of one point.
@@ -118,6 +128,27 @@ pub enum Interleave {
     Scene,
 }
 
+/// What scenes differ in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum GrowsWith {
+    /// The size of the picture.
+    Pixels,
+    /// The number of triangles.
+    Triangles,
+}
+
+impl GrowsWith {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            GrowsWith::Pixels => "pixels",
+            GrowsWith::Triangles => "triangles",
+        }
+    }
+}
+
 /// What an error is counted against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -140,6 +171,8 @@ pub enum Metric {
     /// The same over the mean of the reference.
     #[default]
     Rrmse,
+    /// That of the means of blocks of 8×8 pixels.
+    Blocks,
     /// Mean of the squared relative difference.
     Relmse,
     /// Mean FLIP.
@@ -153,6 +186,7 @@ impl Grid {
         Some(match self.metric {
             Metric::Rmse => errors.rmse,
             Metric::Rrmse => errors.rrmse,
+            Metric::Blocks => errors.block_rrmse,
             Metric::Relmse => errors.relmse,
             Metric::Flip => errors.flip,
         })
@@ -167,11 +201,15 @@ impl Grid {
         entries.as_ref()?.get(&self.entry)
     }
 
-    /// The relative noise of what the entry of a run was compared with; `None` if it was not.
-    pub fn noise(&self, run: &Run, compare: Compare) -> Option<f64> {
-        let entries = match compare {
-            Compare::Full => &run.noise_full,
-            Compare::Equal => &run.noise,
+    /// The relative noise of what the entry of a run was compared with, of its pixels or of blocks of them; `None` if it was not, and of metrics
+    /// that are no relative RMSE.
+    pub fn noise(&self, run: &Run, compare: Compare, metric: Metric) -> Option<f64> {
+        let entries = match (metric, compare) {
+            (Metric::Rrmse, Compare::Full) => &run.noise_full,
+            (Metric::Rrmse, Compare::Equal) => &run.noise,
+            (Metric::Blocks, Compare::Full) => &run.block_noise_full,
+            (Metric::Blocks, Compare::Equal) => &run.block_noise,
+            _ => return None,
         };
         entries.as_ref()?.get(&self.entry).copied()
     }
@@ -195,6 +233,7 @@ impl Grid {
         match self.metric {
             Metric::Rmse => "RMSE",
             Metric::Rrmse => "relative RMSE",
+            Metric::Blocks => "relative RMSE of 8×8 pixels",
             Metric::Relmse => "relMSE",
             Metric::Flip => "mean FLIP",
         }
@@ -270,6 +309,9 @@ impl GridScene {
         }
         if let Some(sky) = self.sky {
             scene.set_sky(sky);
+        }
+        for _ in 0..self.split {
+            scene.split_triangles();
         }
         Ok(scene)
     }

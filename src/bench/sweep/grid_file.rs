@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::grid::{Compare, FRAME_COLUMN, Grid, GridScene, Interleave, Metric, Published, Series};
+use super::grid::{Compare, FRAME_COLUMN, Grid, GridScene, GrowsWith, Interleave, Metric, Published, Series};
 use crate::renderer::{Preset, Slot, Technique};
 use crate::scene::LightSpec;
 
@@ -81,10 +81,15 @@ struct File {
     #[serde(default)]
     counts: BTreeMap<String, String>,
     #[serde(default)]
+    growth: BTreeMap<GrowsWith, Vec<String>>,
+    #[serde(default)]
     published: Vec<Published>,
     scenes: Vec<toml::Value>,
     series: Vec<toml::Table>,
 }
+
+/// Cuts into four beyond which even a small scene has millions of triangles.
+const MOST_SPLITS: u32 = 8;
 
 fn default_size() -> [u32; 2] {
     [256, 256]
@@ -112,6 +117,8 @@ struct FileScene {
     light: Vec<String>,
     sky: Option<[f32; 3]>,
     size: Option<[u32; 2]>,
+    #[serde(default)]
+    split: u32,
     #[serde(default)]
     set: BTreeMap<String, Value>,
 }
@@ -166,6 +173,7 @@ fn parse(text: &str) -> Result<Grid, String> {
         metric: file.metric,
         columns: file.columns,
         counts: file.counts,
+        growth: file.growth,
         published: file.published,
         scenes: scenes.collect::<Result<_, _>>()?,
         series: series.collect::<Result<_, _>>()?,
@@ -173,17 +181,23 @@ fn parse(text: &str) -> Result<Grid, String> {
     for published in &grid.published {
         check_published(&grid, published)?;
     }
+    for name in grid.growth.values().flatten() {
+        check_scene(&grid, "growth", name)?;
+    }
     distinct("scene", grid.scenes.iter().map(|scene| &scene.name))?;
     distinct("series", grid.series.iter().map(|series| &series.name))?;
     Ok(grid)
 }
 
+fn check_scene(grid: &Grid, whose: &str, name: &str) -> Result<(), String> {
+    let scenes: Vec<&str> = grid.scenes.iter().map(|scene| scene.name.as_str()).collect();
+    let known = scenes.contains(&name);
+    known.then_some(()).ok_or_else(|| format!("{whose}: there is no scene {name:?}; scenes: {}", scenes.join(", ")))
+}
+
 /// Whether what is published belongs to a scene and to columns that there are.
 fn check_published(grid: &Grid, published: &Published) -> Result<(), String> {
-    let scenes: Vec<&str> = grid.scenes.iter().map(|scene| scene.name.as_str()).collect();
-    if !scenes.contains(&published.scene.as_str()) {
-        return Err(format!("published: there is no scene {:?}; scenes: {}", published.scene, scenes.join(", ")));
-    }
+    check_scene(grid, "published", &published.scene)?;
     let columns: Vec<&str> = grid.columns.keys().map(String::as_str).chain([FRAME_COLUMN]).collect();
     let series: Vec<&str> = grid.series.iter().map(|series| series.name.as_str()).collect();
     if let Some(name) = published.series.as_deref().filter(|name| !series.contains(name)) {
@@ -198,7 +212,8 @@ fn check_published(grid: &Grid, published: &Published) -> Result<(), String> {
 fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     let scene = match scene {
         toml::Value::String(path) => {
-            FileScene { path, name: None, camera: None, light: Vec::new(), sky: None, size: None, set: BTreeMap::new() }
+            let (name, camera, light, sky, size, split, set) = Default::default();
+            FileScene { path, name, camera, light, sky, size, split, set }
         }
         table => {
             let named = table.get("name").or_else(|| table.get("path")).and_then(toml::Value::as_str);
@@ -213,6 +228,9 @@ fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     if scene.sky.is_some_and(|sky| sky.iter().any(|value| !(0.0..=f32::MAX).contains(value))) {
         return Err(format!("{label}: sky takes three numbers of at least 0, W/(m² sr)"));
     }
+    if scene.split > MOST_SPLITS {
+        return Err(format!("{label}: split is at most {MOST_SPLITS}"));
+    }
     if scene.size.is_some_and(|size| size.contains(&0)) {
         return Err(format!("{label}: size is at least 1"));
     }
@@ -224,8 +242,8 @@ fn read_scene(index: usize, scene: toml::Value) -> Result<GridScene, String> {
     };
     let stem = Path::new(&scene.path).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let name = scene.name.or(stem).unwrap_or_default();
-    let FileScene { path, light, sky, size, set, .. } = scene;
-    Ok(GridScene { name, path, camera, light, sky, size, set })
+    let FileScene { path, light, sky, size, split, set, .. } = scene;
+    Ok(GridScene { name, path, camera, light, sky, size, split, set })
 }
 
 fn read_series(index: usize, table: toml::Table) -> Result<Series, String> {
@@ -324,7 +342,7 @@ mod tests {
 
     #[test]
     fn scenes_may_be_tables() {
-        let scene = "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3], size = [64, 32], \
+        let scene = "{ path = \"a/white-room.glb\", camera = 0, light = [\"sun:45,60\"], sky = [1, 2, 3], size = [64, 32], split = 2, \
             set = { \"particles.count\" = 5 } }";
         let grid = parse(&format!("scenes = [\"ring\", {scene}]\n{SERIES}")).expect("sound");
         let expected = GridScene {
@@ -334,6 +352,7 @@ mod tests {
             light: vec!["sun:45,60".to_owned()],
             sky: Some([1.0, 2.0, 3.0]),
             size: Some([64, 32]),
+            split: 2,
             set: BTreeMap::from([("particles.count".to_owned(), Value::from(5))]),
         };
         assert_eq!(grid.scenes[1], expected);
@@ -365,6 +384,9 @@ mod tests {
         let methods = |methods: &str| format!("{scenes}{SERIES}methods = {{ {methods} }}");
         assert_says(&methods("diffus = \"rsm\""), &["series \"a\"", "no slot \"diffus\""]);
         assert_says(&methods("diffuse = \"rms\""), &["series \"a\"", "rms", "final-gather"]);
+        assert_says(&format!("{scenes}growth = {{ pixels = [\"maze\"] }}\n{SERIES}"), &["growth", "\"maze\"", "ring"]);
+        assert_says(&format!("{scenes}growth = {{ time = [\"ring\"] }}\n{SERIES}"), &["time", "pixels", "triangles"]);
+        assert_says(&format!("scenes = [{{ path = \"ring\", split = 9 }}]\n{SERIES}"), &["\"ring\"", "split", "8"]);
         assert_says(&format!("{scenes}entry = \"depth\"\n{SERIES}"), &["depth", "covered", "diffuse"]);
         assert_says(&format!("{scenes}compare = \"all\"\n{SERIES}"), &["line 2", "all", "full", "equal"]);
         assert_says(&format!("{scenes}frames = 0\n{SERIES}"), &["frames", "at least 1"]);

@@ -45,9 +45,9 @@ impl Line<'_> {
         self.marks.iter().filter_map(|mark| Some((mark.time_ms, mark.error?))).collect()
     }
 
-    /// Value and time of the points whose value is a number.
-    pub fn value_times(&self) -> Vec<(f64, f64)> {
-        self.marks.iter().filter_map(|mark| Some((mark.value?.as_f64()?, mark.time_ms))).collect()
+    /// Value and a time of the points whose value is a number.
+    pub fn value_times(&self, ms: impl Fn(&Mark<'_>) -> f64) -> Vec<(f64, f64)> {
+        self.marks.iter().filter_map(|mark| Some((mark.value?.as_f64()?, ms(mark)))).collect()
     }
 
     /// What distinguishes it from others of the series: `preset high, shadow.filter_radius 1`; empty if nothing does.
@@ -112,7 +112,7 @@ mod tests {
         let names: Vec<(&str, Option<&str>, usize)> =
             lines.iter().map(|line| (line.name, line.key, line.marks.len())).collect();
         assert_eq!(names, [("gathered", Some("rsm.vpls"), 5), ("shadows", Some("lights.resolution"), 2)]);
-        assert_eq!(lines[0].value_times()[4].0, 4096.0);
+        assert_eq!(lines[0].value_times(|mark| mark.time_ms)[4].0, 4096.0);
         assert!(lines[0].pairs().windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1));
         assert!(lines.iter().flat_map(|line| &line.marks).any(|mark| mark.pareto));
         assert!(super::lines(&sweep, "maze").is_empty());

@@ -5,7 +5,6 @@ use plotters::style::text_anchor::HPos;
 
 use super::canvas::{Canvas, Drawn, FAINT_GRID, FAINT_INK, GRID, INK, Point, body, colour, darker, small, title};
 use super::chart::{Area, LogAxis, Places, number_label, time_label};
-use super::grid::Metric;
 use super::lines::{Line, lines};
 use super::points::written;
 use super::result::Sweep;
@@ -47,11 +46,11 @@ pub fn plot(sweep: &Sweep, scene: &str) -> Option<String> {
     Some(text)
 }
 
-/// The error that the references have by their own noise, the largest of them. It is known as a relative RMSE alone.
+/// The error that the references have by their own noise, the largest of them. It is known as a relative RMSE alone, of pixels or of blocks.
 fn noise(sweep: &Sweep, lines: &[Line<'_>]) -> Option<f64> {
     let runs = lines.iter().flat_map(|line| &line.marks).map(|mark| &mark.measured.run);
-    let noises = runs.filter_map(|run| sweep.grid.noise(run, sweep.grid.compare));
-    noises.filter(|noise| sweep.grid.metric == Metric::Rrmse && drawable((1.0, *noise))).max_by(f64::total_cmp)
+    let noises = runs.filter_map(|run| sweep.grid.noise(run, sweep.grid.compare, sweep.grid.metric));
+    noises.filter(|noise| drawable((1.0, *noise))).max_by(f64::total_cmp)
 }
 
 /// Whether a pair has a place on logarithmic axes.
@@ -222,6 +221,7 @@ mod tests {
     use roxmltree::Document;
 
     use super::*;
+    use crate::bench::sweep::Metric;
     use crate::bench::sweep::execute::tests::whole;
 
     fn strokes<'a>(document: &'a Document<'_>, series: usize) -> Vec<&'a str> {

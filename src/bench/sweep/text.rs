@@ -1,7 +1,7 @@
 //! A scene's points as a table for a terminal, and what they come to.
 
 use super::fit::{EqualTime, equal_time, slope};
-use super::grid::{Compare, FRAME_COLUMN};
+use super::grid::{Compare, FRAME_COLUMN, Metric};
 use super::lines::{Line, Mark, lines};
 use super::points::written;
 use super::result::Sweep;
@@ -20,17 +20,22 @@ pub fn scene_text(sweep: &Sweep, scene: &str) -> String {
     };
     let mut out = format!("{scene}: {width}x{height}, {shown}\n{}\n", points_table(sweep, &lines));
     if lines.iter().any(|line| line.marks.len() > 1) {
-        out += &format!("\n{}\n", lines_table(&lines));
+        out += &format!("\n{}\n", lines_table(sweep, &lines));
     }
     out
 }
 
 /// The columns of a sweep that has references.
-const ERROR_COLUMNS: [&str; 4] = ["rrmse equal", "rrmse full", "flip", "Pareto"];
+const ERROR_COLUMNS: [&str; 7] = ["rrmse equal", "rrmse full", "8×8", "its noise", "mean", "flip", "Pareto"];
 
 /// Characters for each column of the grid's own, and how many of these a table of the usual width has room for.
 const OWN_COLUMN: u16 = 14;
-const OWN_COLUMNS_THAT_FIT: u16 = 4;
+const OWN_COLUMNS_THAT_FIT: u16 = 1;
+
+/// Of a table with so many columns that a grid asks for. They stand side by side: numbers that are broken in two cannot be read.
+pub(super) fn width(own_columns: usize) -> u16 {
+    TEXT_WIDTH + OWN_COLUMN * (own_columns as u16).saturating_sub(OWN_COLUMNS_THAT_FIT)
+}
 
 fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     let columns: Vec<String> = sweep.grid.columns.keys().map(|name| format!("{name} ms")).collect();
@@ -43,9 +48,7 @@ fn points_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     }
     let numbers: Vec<usize> = (2..3 + sweep.grid.counts.len() + columns.len() + ERROR_COLUMNS.len() - 1).collect();
     let mut table = table(&header, &numbers);
-    // A grid that asks for many columns of its own has them side by side: numbers that are broken in two cannot be read.
-    let own = (sweep.grid.counts.len() + columns.len()) as u16;
-    table.set_width(TEXT_WIDTH + OWN_COLUMN * own.saturating_sub(OWN_COLUMNS_THAT_FIT));
+    table.set_width(width(sweep.grid.counts.len() + columns.len()));
     for line in lines {
         for mark in &line.marks {
             table.add_row(point_cells(sweep, mark));
@@ -61,7 +64,7 @@ fn time_cell(ours: f64, published: Option<f64>) -> String {
 }
 
 /// The passes whose full names begin so, added up, milliseconds.
-fn column_ms(run: &Run, beginnings: &[String]) -> f64 {
+pub(super) fn column_ms(run: &Run, beginnings: &[String]) -> f64 {
     let is_of = |row: &&PassRow| {
         let name = row.full_name();
         beginnings.iter().any(|beginning| name.starts_with(beginning))
@@ -86,6 +89,9 @@ fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
         cells.extend([
             optional(errors(Compare::Equal).map(|errors| errors.rrmse)),
             optional(errors(Compare::Full).map(|errors| errors.rrmse)),
+            optional(errors(sweep.grid.compare).map(|errors| errors.block_rrmse)),
+            optional(sweep.grid.noise(&measured.run, sweep.grid.compare, Metric::Blocks)),
+            optional(errors(sweep.grid.compare).map(|errors| errors.mean_ratio)),
             optional(errors(sweep.grid.compare).map(|errors| errors.flip)),
             if mark.pareto { "*" } else { "" }.to_owned(),
         ]);
@@ -93,21 +99,32 @@ fn point_cells(sweep: &Sweep, mark: &Mark<'_>) -> Vec<String> {
     cells
 }
 
-fn lines_table(lines: &[Line<'_>]) -> String {
+fn lines_table(sweep: &Sweep, lines: &[Line<'_>]) -> String {
     let equal = equal_time(lines);
     let at = equal.as_ref().map(|equal| format!("error at {} ms", units::milliseconds(equal.time_ms)));
+    let columns: Vec<String> = sweep.grid.columns.keys().map(|name| format!("{name} ~ value^")).collect();
     let mut header = vec!["line", "error ~ time^", "time ~ value^"];
+    header.extend(columns.iter().map(String::as_str));
     header.extend(at.as_deref());
-    let mut table = table(&header, &[1, 2, 3][..header.len() - 1]);
+    let mut table = table(&header, &(1..header.len()).collect::<Vec<_>>());
+    table.set_width(width(columns.len()));
     for (index, line) in lines.iter().enumerate() {
-        let exponent = |pairs: &[(f64, f64)]| slope(pairs).map(|slope| format!("{slope:.2}")).unwrap_or_default();
-        let mut cells = vec![label(line), exponent(&line.pairs()), exponent(&line.value_times())];
+        let mut cells = vec![label(line), exponent(slope(&line.pairs()))];
+        let of_values = |ms: &dyn Fn(&Mark<'_>) -> f64| exponent(slope(&line.value_times(ms)));
+        cells.push(of_values(&|mark| mark.time_ms));
+        cells
+            .extend(sweep.grid.columns.values().map(|passes| of_values(&|mark| column_ms(&mark.measured.run, passes))));
         if let Some(EqualTime { errors, .. }) = &equal {
             cells.push(optional(errors[index]));
         }
         table.add_row(cells);
     }
     table.trim_fmt()
+}
+
+/// With two decimals; nothing if there is none.
+pub(super) fn exponent(slope: Option<f64>) -> String {
+    slope.map(|slope| format!("{slope:.2}")).unwrap_or_default()
 }
 
 /// `rsm` or `rsm (preset high)`.
@@ -179,6 +196,22 @@ mod tests {
         assert!(row("rsm.vpls 16").contains("3.500") && !row("rsm.vpls 16").contains('('), "{text}");
         sweep.grid.published[0].series = Some("another".to_owned());
         assert!(!scene_text(&sweep, "ring").contains("(7.25)"));
+    }
+
+    #[test]
+    fn columns_have_slopes_of_their_own() {
+        let mut sweep = whole();
+        sweep.grid.columns = BTreeMap::from([("gather".to_owned(), vec!["diffuse/rsm/gather".to_owned()])]);
+        for measured in &mut sweep.points {
+            let value = measured.values.values().next().and_then(Value::as_f64).expect("a number");
+            let ms = Spread { median: 0.5 * value.powf(1.5), ..Spread::default() };
+            let (piece, pass) = ("diffuse/rsm".to_owned(), "gather".to_owned());
+            measured.run.passes = vec![PassRow { piece, pass, ms, ..PassRow::default() }];
+        }
+        let text = scene_text(&sweep, "ring");
+        let row = text.lines().rfind(|line| line.starts_with(" gathered")).expect("a row");
+        let cells: Vec<&str> = row.split_whitespace().collect();
+        assert_eq!(cells[2..4], ["0.90", "1.50"], "{text}");
     }
 
     #[test]

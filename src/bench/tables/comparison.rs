@@ -5,7 +5,8 @@ use crate::bench::comparison::{ComparisonReport, NOISE_BOUND, layers};
 use crate::bench::units;
 use crate::metrics::Comparison;
 
-const HEADER: [&str; 9] = ["layer", "rmse", "rrmse", "relmse", "psnr dB", "ssim", "flip", "mean ratio", "noise rmse"];
+const HEADER: [&str; 10] =
+    ["layer", "rmse", "rrmse", "8×8", "relmse", "psnr dB", "ssim", "flip", "mean ratio", "noise rmse"];
 
 /// A row for the image and each slot. The last column, the noise that the reference states of itself, is left out if it states
 /// none; an error below [`NOISE_BOUND`] times that noise stands as a bound, `< x`.
@@ -24,7 +25,7 @@ pub fn comparison_text(report: &ComparisonReport) -> String {
     text
 }
 
-fn cells(layer: &str, Comparison { errors, .. }: &Comparison, noise: Option<f64>) -> [String; 9] {
+fn cells(layer: &str, Comparison { errors, .. }: &Comparison, noise: Option<f64>) -> [String; 10] {
     let bound = noise.map(|noise| NOISE_BOUND * noise).filter(|bound| errors.rmse < *bound);
     // Both are the same difference in two units.
     let bounded = |error: f64| match bound {
@@ -38,6 +39,7 @@ fn cells(layer: &str, Comparison { errors, .. }: &Comparison, noise: Option<f64>
         layer.to_owned(),
         bounded(errors.rmse),
         bounded(errors.rrmse),
+        units::error(errors.block_rrmse),
         units::error(errors.relmse),
         decimals(errors.psnr, 2),
         decimals(errors.ssim, 4),
@@ -67,12 +69,16 @@ mod tests {
         let text = comparison_text(&example());
         assert!(text.starts_with("a.exr against b.exr: 4x3\n"), "{text}");
         let image = row(&text, "image");
-        assert_eq!(image[..4], ["image", "0.500", "0.500", "0.250"], "{text}");
-        assert_eq!(image[7..], ["1.5000", "0.100"], "{text}");
+        assert_eq!(image[..5], ["image", "0.500", "0.500", "0.500", "0.250"], "{text}");
+        assert_eq!(image[8..], ["1.5000", "0.100"], "{text}");
         let diffuse = row(&text, "diffuse");
         // 0.0625 is below twice 0.05; the mean is one half.
         assert_eq!(diffuse[..3], ["diffuse", "< 0.100", "< 0.200"], "{text}");
-        assert_eq!(row(&text, "caustics"), ["caustics", "0", "0", "0", "∞", "1.0000", "0.0000", "1.0000"], "{text}");
+        assert_eq!(
+            row(&text, "caustics"),
+            ["caustics", "0", "0", "0", "0", "∞", "1.0000", "0.0000", "1.0000"],
+            "{text}"
+        );
         assert!(text.contains("twice the noise"), "{text}");
         let positions = ["image", "diffuse", "caustics"].map(|layer| text.find(&format!("\n {layer}")));
         assert!(positions.is_sorted() && positions[0].is_some(), "the order of slots: {text}");

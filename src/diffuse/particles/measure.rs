@@ -1,7 +1,7 @@
 //! What particles stand for: facets, and by them areas and albedos.
 
 use super::formats::{FLOAT, FLOATS4, WORD, WORDS2, WORDS4};
-use super::moved::{AgainList, Moved, groups_of};
+use super::moved::{AgainList, Moved, groups_of_list};
 use super::place::Placed;
 use super::stage::Stage;
 use crate::graph::Graph;
@@ -41,7 +41,7 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
     let pass = pass.count("lost", *lost, 0);
     match again {
         Some(AgainList { head, .. }) => pass.count("facets", head, 3).threads_indirect(head, 0),
-        None => pass.count("facets", kept.facets, 2 * triangle_count as usize).groups(groups_of(room)),
+        None => pass.count("facets", kept.facets, 2 * triangle_count as usize).groups(groups_of_list(room)),
     }
     let matter = graph.buffer::<[f32; 4]>("particles.matter", ((1 + broad_lobes) * particle_count) as usize);
     let pass = Matter {
@@ -95,6 +95,6 @@ fn touched_facets(
             facets: facets.texels(WORDS2),
             push: TouchedFacetsPush { triangle_count: placed.triangle_count, capacity },
         };
-        graph.pass("diffuse/particles/measure/touched", pass).unordered().groups(groups_of(most));
+        graph.pass("diffuse/particles/measure/touched", pass).unordered().groups(groups_of_list(most));
     })
 }

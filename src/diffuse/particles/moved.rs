@@ -9,14 +9,13 @@ use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
 use crate::shaders::particles::{Again, AgainPush, Touched, TouchedPush};
 
-/// Local size of the passes that do something again.
+/// Local size of the passes that do something again, as in glsl/particles/again.glsl.
 const GROUP: u32 = 64;
-
-/// Groups along x of a pass over a list, as in glsl/particles/again.glsl.
+/// Groups along x at most, likewise.
 const MOST_GROUPS: u32 = 32_768;
 
-/// Groups of a pass over so many numbers.
-pub(super) fn groups_of(count: u32) -> [u32; 3] {
+/// Groups for so many numbers, in rows: devices need not take more than 65,535 along x. What of a row is beyond them has nothing to do.
+pub(super) fn groups_of_list(count: u32) -> [u32; 3] {
     let groups = count.div_ceil(GROUP);
     [groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1]
 }
