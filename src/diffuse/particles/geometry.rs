@@ -1,6 +1,7 @@
 //! The geometry stage: particles on the surfaces, what they stand for, links between them, and the lists by which their irradiance is read. It stands while
 //! geometry and materials do.
 
+use super::events::Levels;
 use super::kept::{Chunk, Kept};
 use super::links::link;
 use super::lists::list;
@@ -24,6 +25,8 @@ pub(super) struct ParticleSpace {
     pub(super) count: u32,
     /// 1: normal maps turn surfaces against their particles.
     pub(super) turns: u32,
+    /// How light is told apart by specular events.
+    pub(super) levels: Levels,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
     /// Albedo and area of each.
@@ -49,7 +52,8 @@ impl ParticleSpace {
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
         let particle_count = count_of(scene, options);
         let placed = Placed::declare(graph, scene, particle_count);
-        let kept = Kept::declare(graph, scene, options, particle_count);
+        let levels = Levels::new(scene, options);
+        let kept = Kept::declare(graph, scene, options, (particle_count, levels));
         let moved = scene.motion.as_ref().filter(|motion| kept.carry_on(graph, motion.from));
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);
@@ -63,6 +67,7 @@ impl ParticleSpace {
         ParticleSpace {
             count: particle_count,
             turns: u32::from(scene.facts.normal_mapped),
+            levels,
             rays,
             group,
             matter,

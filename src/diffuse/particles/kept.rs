@@ -1,5 +1,6 @@
 //! What is kept of particles from one geometry to the next, so that where a part of the surfaces moved the rest need not be done again.
 
+use super::events::Levels;
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -24,6 +25,8 @@ pub(super) struct Kept {
     rest: u64,
     surfaces: u64,
     pub(super) sky_shines: bool,
+    /// Of the sky's light.
+    pub(super) sky_levels: Levels,
     /// Where the second ends of links for scattering begin.
     pub(super) second_ends: u32,
     /// Which particle stands for each point that they are measured by.
@@ -45,7 +48,7 @@ impl Kept {
         graph: &mut Graph<'_>,
         scene: &TracedScene,
         options: &ParticlesOptions,
-        particle_count: u32,
+        (particle_count, levels): (u32, Levels),
     ) -> Kept {
         let &ParticlesOptions { scatter, gather, emitter_samples, .. } = options;
         let count = particle_count as usize;
@@ -59,10 +62,21 @@ impl Kept {
         let second_ends = scatter * scatter * particle_count;
         let ends = if scene.facts.specular { 2 } else { 1 };
         let arrival_words = if scene.emissive_count > 0 { 9 } else { 3 };
+        let sky_levels = if sky_shines { levels } else { Levels::default() };
+        let arrival_words = arrival_words + 3 * sky_levels.late() as usize;
         Kept {
-            rest: hash_of(&(scene.emission_key(), particle_count, scatter, gather, emitter_samples, sky_shines)),
+            rest: hash_of(&(
+                scene.emission_key(),
+                particle_count,
+                scatter,
+                gather,
+                emitter_samples,
+                sky_shines,
+                sky_levels,
+            )),
             surfaces: scene.surfaces_key(),
             sky_shines,
+            sky_levels,
             second_ends,
             homes: graph.carried_buffer("particles.point_homes", POINTS as usize * count),
             tallies: graph.carried_buffer("particles.tallies", 4 * (1 + scene.facts.broad as usize) * count),

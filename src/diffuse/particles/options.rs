@@ -30,7 +30,7 @@ options! {
     ParticlesOptions, "particles":
     /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
     count: u32 = 0, draft = 20_000; OptionKind::Integer(0, 600_000), "particles", "linear";
-    /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. None: until less than a hundredth of the flux is left.
+    /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. Reflections and refractions count as steps. None: until less than a hundredth of the flux is left.
     bounces: Option<u32> = None; OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
     /// How light goes from particle to particle. Bounces mean the same light paths either way.
     transport: ParticleTransport = ParticleTransport::TwoWay; OptionKind::Choice(ParticleTransport::NAMES), "", "";

@@ -1,5 +1,6 @@
 //! Particles against closed forms, against paths, and what stands when something moves.
 
+mod events;
 mod lamps;
 mod moving;
 mod receivers;
