@@ -27,6 +27,7 @@ layout(set = 0, binding = 2) buffer Lost { uint lost[]; };
 layout(set = 0, binding = 3) buffer Homes { uint homes[]; };      // of each point (home_words.glsl)
 layout(set = 0, binding = 4) uniform usamplerBuffer head;
 layout(set = 0, binding = 5) uniform usamplerBuffer again;
+layout(set = 0, binding = 6) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push {
     uint triangle_count;
@@ -54,7 +55,7 @@ void main() {
     if (number >= push.point_count) {
         return;
     }
-    SurfacePoint point = surface_point(sums, push.triangle_count, number, push.point_count, 2u);
+    SurfacePoint point = surface_point(sums, backs, push.triangle_count, number, push.point_count, 2u);
     Material material = load_material(materials, point.triangle.material);
     if (ALPHA_MASKS != 0u && material.alpha_cutoff >= 0.0 && !is_covered(point.triangle, material, point.place)) {
         homes[number] = NO_POINT;

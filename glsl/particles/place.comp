@@ -13,6 +13,7 @@ layout(set = 0, binding = 1) uniform samplerBuffer spacing;
 layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };
 layout(set = 0, binding = 3) writeonly buffer Buckets { uint buckets[]; };
 layout(set = 0, binding = 4) buffer Counts { uint counts[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push {
     uint triangle_count;
@@ -25,7 +26,7 @@ void main() {
     if (particle >= push.particle_count) {
         return;
     }
-    SurfacePoint point = surface_point(sums, push.triangle_count, particle, push.particle_count, 1u);
+    SurfacePoint point = surface_point(sums, backs, push.triangle_count, particle, push.particle_count, 1u);
     uint bucket = bucket_of(cell_of(point.position, texelFetch(spacing, 0).x), push.bucket_count);
     places[particle] = uvec4(floatBitsToUint(point.position), pack_direction(point.normal));
     places[push.particle_count + particle] = uvec4(pack_direction(point.face), point.index, 0u, 0u);

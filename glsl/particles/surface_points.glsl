@@ -7,6 +7,7 @@
 #include "lib/sobol.glsl"
 #include "lib/traced_scene.glsl"
 #include "particles/shading_normal.glsl"
+#include "particles/sides.glsl"
 
 struct SurfacePoint {
     Triangle triangle;
@@ -23,7 +24,7 @@ vec2 place_by_halves(vec2 square) {
 }
 
 // `sums`: the areas before each of `triangle_count` triangles, the total behind.
-SurfacePoint surface_point(samplerBuffer sums, uint triangle_count, uint number, uint count, uint seed) {
+SurfacePoint surface_point(samplerBuffer sums, usamplerBuffer backs, uint triangle_count, uint number, uint count, uint seed) {
     float total = texelFetch(sums, int(triangle_count)).x;
     float step_area = total / float(count);
     float area = (float(number) + 0.5) * step_area;
@@ -44,7 +45,7 @@ SurfacePoint surface_point(samplerBuffer sums, uint triangle_count, uint number,
     SurfacePoint point;
     point.index = low;
     point.triangle = load_triangle(triangles, low);
-    bool both_sides = (load_material(materials, point.triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    bool both_sides = has_both_sides(backs, low, load_material(materials, point.triangle.material));
     bool back = both_sides && along >= 0.5;
     float side_area = both_sides ? 0.5 * own : own;
     // Numbers are counted from the first one of the side: areas are not exact enough for millions of points.

@@ -199,8 +199,8 @@ fn mirrors_show_what_the_references_limits_say() {
             &format!("depth {depth}, {bounces:?} steps"),
             &pixels(&frame, Slot::Specular),
             &truth,
-            0.025,
-            0.06,
+            0.015,
+            0.04,
         );
     }
 }

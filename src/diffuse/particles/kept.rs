@@ -72,6 +72,7 @@ impl Kept {
                 gather,
                 emitter_samples,
                 sky_shines,
+                scene.backs(),
                 sky_levels,
             )),
             surfaces: scene.surfaces_key(),

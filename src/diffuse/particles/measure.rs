@@ -3,6 +3,7 @@
 use super::formats::{FLOAT, WORD, WORDS4};
 use super::kept::POINTS;
 use super::moved::{AgainList, Moved};
+use super::place::backs_of;
 use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
@@ -29,6 +30,8 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
         homes: if again.is_some() { homes.read_write() } else { homes.start_then_read() },
         head,
         again: list,
+        has_backs: u32::from(placed.backs.is_some()),
+        backs: backs_of(placed.backs),
         push: CatchPush { triangle_count, point_count, again: u32::from(again.is_some()) },
     };
     let pass = graph.pass("diffuse/particles/measure/catch", pass).leaves(homes, key).leaves(tallies, key);

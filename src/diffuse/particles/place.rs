@@ -3,8 +3,8 @@
 
 use super::formats::{FLOAT, WORD, WORDS4};
 use crate::frame::rays::TracedScene;
-use crate::graph::Graph;
-use crate::graph::bindings::BufferRef;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::{Dependence, Graph};
 use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::groups::{Particles, SceneRays};
 use crate::shaders::particles::{
@@ -17,6 +17,8 @@ pub(super) struct Placed {
     pub(super) triangle_count: u32,
     /// Diffuse area before each triangle, and the total.
     pub(super) sums: BufferRef<f32>,
+    /// A bit for each one-sided triangle whose back counts too, where there are any.
+    pub(super) backs: Option<BufferRef<u32>>,
     pub(super) group: Particles,
 }
 
@@ -27,8 +29,17 @@ impl Placed {
         let triangle_count = scene.triangle_count;
         let threads = [particle_count, 1, 1];
         let areas = graph.buffer::<f32>("particles.areas", triangle_count as usize);
+        let marks = scene.backs();
+        let backs = (!marks.is_empty()).then(|| graph.upload("particles.backs", marks, Dependence::GEOMETRY));
         let push = AreasPush { triangle_count };
-        let pass = Areas { scene_rays: rays.clone(), own_areas: scene.own_areas(graph), areas: areas.write(), push };
+        let pass = Areas {
+            scene_rays: rays.clone(),
+            own_areas: scene.own_areas(graph),
+            areas: areas.write(),
+            has_backs: u32::from(backs.is_some()),
+            backs: backs_of(backs),
+            push,
+        };
         graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
 
         let sums = graph.buffer::<f32>("particles.area_sums", triangle_count as usize + 1);
@@ -53,6 +64,8 @@ impl Placed {
             places: places.write(),
             buckets: buckets.write(),
             counts: counts.read_write(),
+            has_backs: u32::from(backs.is_some()),
+            backs: backs_of(backs),
             push: PlacePush { triangle_count, particle_count, bucket_count },
         };
         let pass = graph.pass("diffuse/particles/place/points", pass);
@@ -101,6 +114,11 @@ impl Placed {
             particle_spacing: spacing.uniform(),
             particle_entries: entries.texels(WORDS4),
         };
-        Placed { rays, triangle_count, sums, group }
+        Placed { rays, triangle_count, sums, backs, group }
     }
+}
+
+/// As passes bind them.
+pub(super) fn backs_of(backs: Option<BufferRef<u32>>) -> TexelBuffer {
+    backs.map_or(TexelBuffer::absent(), |backs| backs.texels(WORD))
 }
