@@ -27,7 +27,7 @@ fn count(frame: &Frame, pass: &str, name: &str) -> u64 {
 }
 
 /// The mean difference of two pictures, over the mean of the second.
-fn difference(found: &Frame, expected: &Frame) -> f64 {
+pub(super) fn difference(found: &Frame, expected: &Frame) -> f64 {
     let [found, expected] = [found, expected].map(|frame| &frame.slots[&Slot::Diffuse].pixels);
     let values = || found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (f64::from(*a), f64::from(*b)));
     let sum: f64 = values().map(|(_, b)| b).sum();
