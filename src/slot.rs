@@ -111,11 +111,15 @@ pub struct LightPaths {
     pub bounces: Option<u32>,
     /// Which caustics there are.
     pub caustics: CausticPaths,
+    /// Reflections and refractions between the eye and the surface that mirrors and glass show, at most; `bounces` are those between the light and that surface
+    /// then. The last surface's specular lobe answers to lamps and the sky if it is wide. `None`: they are bounces like
+    /// others.
+    pub mirrors: Option<u32>,
 }
 
 impl LightPaths {
     /// All paths with at most so many scatterings before the first visible surface.
     pub fn up_to(bounces: impl Into<Option<u32>>) -> LightPaths {
-        LightPaths { bounces: bounces.into(), caustics: CausticPaths::All }
+        LightPaths { bounces: bounces.into(), caustics: CausticPaths::All, mirrors: None }
     }
 }

@@ -14,6 +14,10 @@ layout(constant_id = 51) const uint SPECULAR_CAUSTICS = 0u;
 // 1: the slot `specular` leaves out caustics in what mirrors and glass show; lamps behind the first surface's glass and unlit surfaces in mirrors are there, not
 // in the slot `direct`.
 layout(constant_id = 52) const uint UNMIRRORED = 0u;
+// Reflections and refractions at most between the eye and what mirrors and glass show; 0: there is no such limit.
+layout(constant_id = 53) const uint MIRRORS = 0u;
+// Where there is one, scatterings at most between the light and that.
+layout(constant_id = 54) const uint BOUNCES = 0xFFFFFFFFu;
 
 layout(set = 0, binding = 80) uniform samplerBuffer path_rays;
 layout(set = 0, binding = 81) uniform samplerBuffer path_states;

@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "particles/again.glsl"
 #include "particles/arrivals.glsl"
+#include "particles/events.glsl"
 #include "particles/moved.glsl"
 
 // What the links of one particle bring without those that are traced again: the sky by those that go on escaping, and nothing else, if any is; else as it was.
@@ -15,6 +16,7 @@ layout(set = 0, binding = 2) buffer Arrivals { uint arrivals[]; };
 layout(push_constant, scalar) uniform Push {
     uint first;  // particle of the chunk
     uint count;
+    uint particle_count;
 } push;
 
 void main() {
@@ -31,5 +33,11 @@ void main() {
     uint first = (push.first + own) * arrival_words();
     for (uint word = 0u; word < arrival_words(); ++word) {
         arrivals[first + word] = word < EMISSION_WORD ? sky : 0u;
+    }
+    [[dont_unroll]] for (uint events = 1u; events < EVENT_LEVELS; ++events) {
+        uint late = late_sky(push.particle_count, push.first + own, events);
+        for (uint channel = 0u; channel < 3u; ++channel) {
+            arrivals[late + channel] = 0u;
+        }
     }
 }

@@ -8,6 +8,7 @@
 #include "lib/traced_scene.glsl"
 #include "particles/cells.glsl"
 #include "particles/link_direction.glsl"
+#include "particles/sides.glsl"
 
 // How densely particles are to lie on one cell, over where they lie least densely. Irradiance changes over a distance that is proportional to the harmonic mean
 // distance of what is around (the split-sphere model of Ward et al. 1988),
@@ -23,6 +24,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform samplerBuffer areas;
 layout(set = 0, binding = 1) uniform usamplerBuffer starts;  // first cell of each triangle
 layout(set = 0, binding = 2) writeonly buffer Cells { uvec4 cells[]; };
+layout(set = 0, binding = 3) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push {
     uint triangle_count;
@@ -80,7 +82,7 @@ void main() {
     vec3 position = point_of_triangle(triangle, place_of_part(vec2(1.0 / 3.0), cell - first, parts), front);
     uint side = area < WHOLE_CELL * push.spacing * push.spacing ? LEAST_SIDE : MOST_SIDE;
     float inverse = inverse_mean_distance(position, front, cell, side);
-    if ((load_material(materials, triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u) {
+    if (has_both_sides(backs, low, load_material(materials, triangle.material))) {
         inverse = max(inverse, inverse_mean_distance(position, -front, cell, side));
     }
     float dense = NEAR_SPACINGS * push.spacing * inverse;

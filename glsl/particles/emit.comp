@@ -13,6 +13,7 @@
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
 #include "particles/arrivals.glsl"
+#include "particles/events.glsl"
 #include "particles/places.glsl"
 
 // The flux that one particle receives from the lights, W (Chang et al. 4.2.1, for every kind of light):
@@ -23,7 +24,8 @@
 // density p_k (1/sr, seen from the particle), combined by the balance heuristic with those that the particle's M links end on, with the density cosθ/π and
 // weight w = M·cosθ/π/(K·p + M·cosθ/π) (links.comp): bounded however near the emitter is. s: what share of the sky's light the links see, in mirrors and
 // through glass too.
-// To this comes what photons bring off mirrors and through glass (glints.comp).
+// To this comes what photons bring off mirrors and through glass (glints.comp). Where specular events are counted (events.glsl), the sky and photons that met some
+// stand behind the flux of all particles by how many they met.
 
 layout(local_size_x = 64) in;
 
@@ -33,7 +35,7 @@ layout(constant_id = 0) const uint HAS_GLINTS = 0u;
 layout(set = 0, binding = 1) uniform samplerBuffer matter;
 layout(set = 0, binding = 2) uniform usamplerBuffer arrivals;
 layout(set = 0, binding = 3) readonly buffer Glints { uint glints[]; };  // steps: red, green, blue one by one
-layout(set = 0, binding = 4) writeonly buffer Flux { vec4 flux[]; };
+layout(set = 0, binding = 4) writeonly buffer Flux { vec4 flux[]; };     // W; what share of it is not the sky's
 
 layout(push_constant, scalar) uniform Push {
     uint particle_count;
@@ -47,9 +49,9 @@ layout(push_constant, scalar) uniform Push {
     vec3 sky;                 // W/(m²·sr)
 } push;
 
-// The irradiance that links bring of the sky's light, W/m².
-vec3 sky_by_links(uint particle) {
-    int first = int(particle * arrival_words());
+// The irradiance that links bring of the sky's light, W/m², by so many specular events where these are counted.
+vec3 sky_by_links(uint particle, uint events) {
+    int first = int(events == 0u ? particle * arrival_words() : late_sky(push.particle_count, particle, events));
     uvec3 steps = uvec3(texelFetch(arrivals, first).x, texelFetch(arrivals, first + 1).x, texelFetch(arrivals, first + 2).x);
     return push.sky * vec3(steps) * (PI / (push.links * float(SKY_STEPS)));
 }
@@ -68,6 +70,16 @@ vec3 emission_by_links(uint particle) {
     return radiance * (PI / push.links);
 }
 
+vec4 with_share(vec3 received, vec3 from_sky) {
+    received = is_finite(received) ? received : vec3(0.0);
+    return vec4(received, 1.0 - clamp(luminance(from_sky) / max(luminance(received), 1e-30), 0.0, 1.0));
+}
+
+vec3 by_photons(uint number) {
+    uint first = 3u * number;
+    return HAS_GLINTS != 0u ? vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step : vec3(0.0);
+}
+
 void main() {
     uint particle = gl_GlobalInvocationID.x;
     if (particle >= push.particle_count) {
@@ -75,7 +87,9 @@ void main() {
     }
     float area = texelFetch(matter, int(particle)).w;
     if (area <= 0.0) {
-        flux[particle] = vec4(0.0);
+        [[dont_unroll]] for (uint level = 0u; level < max(EVENT_LEVELS, 1u); ++level) {
+            flux[level * push.particle_count + particle] = vec4(0.0);
+        }
         return;
     }
     uvec4 place = texelFetch(particle_places, int(particle));
@@ -85,7 +99,7 @@ void main() {
     vec3 origin = offset_ray_origin(position, face);
     float disc = area * INVERSE_PI;
 
-    vec3 irradiance = sky_by_links(particle) + emission_by_links(particle);
+    vec3 irradiance = sky_by_links(particle, 0u) + emission_by_links(particle);
     [[dont_unroll]] for (uint i = 0u; i < push.light_count + push.sample_count; ++i) {
         vec3 light = vec3(0.0);
         vec3 way = vec3(0.0);
@@ -122,11 +136,13 @@ void main() {
         }
     }
     vec3 received = irradiance * area;
-    if (HAS_GLINTS != 0u) {
-        uint first = 3u * particle;
-        received += vec3(glints[first], glints[first + 1], glints[first + 2]) * push.watts_a_step;
+    if (EVENT_LEVELS == 0u) {
+        received += by_photons(particle);
     }
-    received = is_finite(received) ? received : vec3(0.0);
-    vec3 from_sky = sky_by_links(particle) * area;
-    flux[particle] = vec4(received, 1.0 - clamp(luminance(from_sky) / max(luminance(received), 1e-30), 0.0, 1.0));
+    flux[particle] = with_share(received, sky_by_links(particle, 0u) * area);
+    [[dont_unroll]] for (uint events = 1u; events < EVENT_LEVELS; ++events) {
+        vec3 from_sky = max3(push.sky) > 0.0 ? sky_by_links(particle, events) * area : vec3(0.0);
+        vec3 from_lamps = by_photons((events - 1u) * push.particle_count + particle);
+        flux[events * push.particle_count + particle] = with_share(from_sky + from_lamps, from_sky);
+    }
 }

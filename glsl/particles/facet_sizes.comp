@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
 #include "lib/traced_scene.glsl"
+#include "particles/sides.glsl"
 
 // The longest edge of one triangle and its height over that, m; the corner across; how many sides count. 0 where no particle stands.
 
@@ -9,6 +10,7 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform samplerBuffer areas;  // twice a triangle's if both sides count
 layout(set = 0, binding = 1) writeonly buffer Sizes { vec4 sizes[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push { uint triangle_count; } push;
 
@@ -19,7 +21,7 @@ void main() {
     }
     float area = texelFetch(areas, int(index)).x;
     Triangle triangle = load_triangle(triangles, index);
-    bool both_sides = (load_material(materials, triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    bool both_sides = has_both_sides(backs, index, load_material(materials, triangle.material));
     vec3 edge = triangle.edge2 - triangle.edge1;
     // Across from corners 0, 1, 2.
     vec3 lengths2 = vec3(dot(edge, edge), dot(triangle.edge2, triangle.edge2), dot(triangle.edge1, triangle.edge1));

@@ -10,6 +10,7 @@
 #include "lib/emitters.glsl"
 #include "lib/lights.glsl"
 #include "lib/sobol.glsl"
+#include "particles/events.glsl"
 #include "particles/found_home.glsl"
 #include "particles/specular.glsl"
 
@@ -21,13 +22,14 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) buffer Glints { uint glints[]; };  // red, green, blue of each particle
+layout(set = 0, binding = 0) buffer Glints { uint glints[]; };  // red, green, blue of each particle; where events are counted, behind them those of two, of three
 
 layout(push_constant, scalar) uniform Push {
     uint photon_count;
     uint emitter_count;
     uint target_count;
     float steps_a_watt;
+    uint particle_count;
 } push;
 
 const uint STREAMS = 0x611775u;
@@ -93,7 +95,7 @@ void main() {
     Triangle triangle = target;
     vec2 place = place_in_triangle(random.zw);
     vec3 met = y;
-    [[dont_unroll]] for (uint event = 0u; event < MOST_SPECULAR; ++event) {
+    [[dont_unroll]] for (uint event = 0u; event < MOST_SPECULAR && is_counted(event + 1u); ++event) {
         Material material = load_material(materials, triangle.material);
         vec4 drawn = sobol_sample(sobol, photon, STREAMS + 2u + event);
         Passage passage = pass_on(triangle, material, place, met, direction, length_to_y, drawn.xyz);
@@ -119,9 +121,10 @@ void main() {
             uint home = found_home(hit.triangle, hit.barycentric, dot(face, direction) > 0.0);
             uvec3 steps = uvec3(min(flux * push.steps_a_watt, vec3(1e8)) + 0.5);
             if (home != NO_PARTICLE && steps != uvec3(0u)) {
-                atomicAdd(glints[3u * home], steps.r);
-                atomicAdd(glints[3u * home + 1u], steps.g);
-                atomicAdd(glints[3u * home + 2u], steps.b);
+                uint first = 3u * (EVENT_LEVELS == 0u ? home : event * push.particle_count + home);
+                atomicAdd(glints[first], steps.r);
+                atomicAdd(glints[first + 1u], steps.g);
+                atomicAdd(glints[first + 2u], steps.b);
             }
             return;
         }

@@ -10,12 +10,13 @@ const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
 // Set where the link also brings light (arrivals.glsl).
 const uint BRINGS_LIGHT = 0x80000000u;
 
-// Set on a link for scattering that came off a mirror, a coat or through glass, and the channels that did not.
-const uint BEHIND = 0x40000000u;
+// Of a link for scattering the channels that were lost on its way, and how many specular events it met: none, or up to 8 off mirrors, coats and through glass.
 const uint WITHOUT_RED = 0x20000000u;
 const uint WITHOUT_GREEN = 0x10000000u;
 const uint WITHOUT_BLUE = 0x08000000u;
-const uint PARTICLE_BITS = 0x07FFFFFFu;
+const uint EVENTS_SHIFT = 23u;
+const uint EVENTS_MASK = 15u;
+const uint PARTICLE_BITS = 0x007FFFFFu;
 
 bool ends_on_particle(uint link) {
     return link < DARK_LINK;
@@ -25,8 +26,8 @@ uint particle_of_link(uint link) {
     return link & PARTICLE_BITS;
 }
 
-bool is_behind(uint link) {
-    return (link & BEHIND) != 0u;
+uint events_of_link(uint link) {
+    return link >> EVENTS_SHIFT & EVENTS_MASK;
 }
 
 // 1 for each channel of light that the link takes along, or 0.
@@ -34,14 +35,14 @@ uvec3 channels_of_link(uint link) {
     return uvec3(equal(uvec3(link) & uvec3(WITHOUT_RED, WITHOUT_GREEN, WITHOUT_BLUE), uvec3(0u)));
 }
 
-// A link off mirrors or through glass, which let `carried` of light pass: it stands for each channel with that probability.
-uint link_behind(uint particle, vec3 carried, float random) {
+// A link off mirrors or through glass, `events` of them, which let `carried` of light pass: it stands for each channel with that probability.
+uint link_behind(uint particle, uint events, vec3 carried, float random) {
     bvec3 lost = greaterThanEqual(vec3(random), carried);
     if (all(lost)) {
         return DARK_LINK;
     }
     uvec3 marks = uvec3(lost) * uvec3(WITHOUT_RED, WITHOUT_GREEN, WITHOUT_BLUE);
-    return particle | BEHIND | marks.r | marks.g | marks.b;
+    return particle | events << EVENTS_SHIFT | marks.r | marks.g | marks.b;
 }
 
 uint bringing_light(uint link, bool brings) {

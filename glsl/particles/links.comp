@@ -11,6 +11,7 @@
 #include "lib/sobol.glsl"
 #include "particles/again.glsl"
 #include "particles/arrivals.glsl"
+#include "particles/events.glsl"
 #include "particles/found_home.glsl"
 #include "particles/link_direction.glsl"
 #include "particles/places.glsl"
@@ -47,6 +48,7 @@ layout(push_constant, scalar) uniform Push {
     float emitter_samples;    // points of emissive surfaces that emit.comp draws for each particle
     float greatest_radiance;  // of any emissive surface, W/(m²·sr)
     uint again;               // 1: those links alone that are listed
+    uint particle_count;
 } push;
 
 // What stands for the surface that the ray meets first, for the first diffuse one on its way, and for one that its reflection off that one meets.
@@ -56,9 +58,12 @@ struct Ends {
     uint second;
 };
 
-void add_sky(uint particle, vec3 share) {
+void add_sky(uint particle, vec3 share, uint events) {
+    if (!is_counted(events)) {
+        return;
+    }
     uvec3 steps = uvec3(min(share, vec3(4.0)) * SKY_STEPS + 0.5);
-    uint first = particle * arrival_words();
+    uint first = EVENT_LEVELS == 0u || events == 0u ? particle * arrival_words() : late_sky(push.particle_count, particle, events);
     atomicAdd(arrivals[first], steps.r);
     atomicAdd(arrivals[first + 1u], steps.g);
     atomicAdd(arrivals[first + 2u], steps.b);
@@ -104,7 +109,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
     [[dont_unroll]] for (uint event = 0u; event <= MOST_SPECULAR; ++event) {
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
-            add_sky(particle, carried / (1.0 - passed));
+            add_sky(particle, carried / (1.0 - passed), event);
             ends.gathered = event == 0u ? ESCAPED_LINK : bringing_light(ends.gathered, true);
             return ends;
         }
@@ -125,7 +130,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
                 atomicAdd(lost[1], 1u);
                 return ends;
             }
-            uint end = event == 0u ? home : arrives ? link_behind(home, carried, random - passed) : DARK_LINK;
+            uint end = event == 0u ? home : arrives ? link_behind(home, event, carried, random - passed) : DARK_LINK;
             if (ends.first == DARK_LINK) {
                 ends.first = end;
             } else {

@@ -13,6 +13,7 @@ layout(set = 0, binding = 1) uniform samplerBuffer spacing;
 layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };
 layout(set = 0, binding = 3) writeonly buffer Buckets { uint buckets[]; };
 layout(set = 0, binding = 4) buffer Counts { uint counts[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push {
     uint cell_count;
@@ -25,7 +26,7 @@ void main() {
     if (particle >= push.particle_count) {
         return;
     }
-    SurfacePoint point = surface_point(cells, push.cell_count, particle, push.particle_count, 1u);
+    SurfacePoint point = surface_point(cells, backs, push.cell_count, particle, push.particle_count, 1u);
     float widest = texelFetch(spacing, 0).x;
     uint bucket = bucket_of(cell_of(point.position, widest), push.bucket_count);
     float own = widest * sqrt(float(point.inverse_weight) / float(INVERSE_WEIGHT_STEPS));

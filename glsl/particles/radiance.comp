@@ -15,6 +15,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint SCATTERED = 1u;
+layout(constant_id = 1) const uint HAS_LATE = 0u;  // 1: some light comes late
 
 layout(set = 0, binding = 0) uniform samplerBuffer matter;
 layout(set = 0, binding = 1) uniform samplerBuffer emitted;    // W
@@ -24,11 +25,16 @@ layout(set = 0, binding = 4) uniform usamplerBuffer received;  // in the last st
 layout(set = 0, binding = 5) uniform usamplerBuffer list_lengths;
 layout(set = 0, binding = 6) uniform usamplerBuffer lists;
 layout(set = 0, binding = 7) writeonly buffer Radiance { vec4 radiance[]; };
+layout(set = 0, binding = 8) uniform samplerBuffer late;       // what lights give in as many specular events as there were steps
 
-layout(push_constant, scalar) uniform Push { uint particle_count; } push;
+layout(push_constant, scalar) uniform Push {
+    uint particle_count;
+    uint received_first;  // where they begin, in particles
+    uint late_first;
+} push;
 
 vec3 scattered_flux(int particle, float watts_a_step) {
-    int first = 3 * particle;
+    int first = 3 * (int(push.received_first) + particle);
     uvec3 word = uvec3(texelFetch(received, first).x, texelFetch(received, first + 1).x, texelFetch(received, first + 2).x);
     return texelFetch(total, particle).rgb - texelFetch(emitted, particle).rgb + vec3(word) * watts_a_step;
 }
@@ -56,6 +62,9 @@ void main() {
             }
         }
         irradiance += around.w > 0.0 ? max(around.rgb, vec3(0.0)) / around.w : vec3(0.0);
+    }
+    if (HAS_LATE != 0u && own.w > 0.0) {
+        irradiance += texelFetch(late, int(push.late_first + particle)).rgb / own.w;
     }
     radiance[particle] = vec4(own.rgb * irradiance * INVERSE_PI, 0.0);
 }

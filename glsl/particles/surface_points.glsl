@@ -8,6 +8,7 @@
 #include "lib/traced_scene.glsl"
 #include "particles/cells.glsl"
 #include "particles/shading_normal.glsl"
+#include "particles/sides.glsl"
 
 struct SurfacePoint {
     Triangle triangle;
@@ -28,7 +29,7 @@ float area_before(usamplerBuffer cells, uint cell) {
     return uintBitsToFloat(texelFetch(cells, int(cell)).x);
 }
 
-SurfacePoint surface_point(usamplerBuffer cells, uint cell_count, uint number, uint count, uint seed) {
+SurfacePoint surface_point(usamplerBuffer cells, usamplerBuffer backs, uint cell_count, uint number, uint count, uint seed) {
     float total = area_before(cells, cell_count);
     float step_area = total / float(count);
     float area = (float(number) + 0.5) * step_area;
@@ -51,7 +52,7 @@ SurfacePoint surface_point(usamplerBuffer cells, uint cell_count, uint number, u
     point.index = cell.y;
     point.triangle = load_triangle(triangles, point.index);
     point.inverse_weight = cell.w;
-    bool both_sides = (load_material(materials, point.triangle.material).flags & MATERIAL_DOUBLE_SIDED) != 0u;
+    bool both_sides = has_both_sides(backs, point.index, load_material(materials, point.triangle.material));
     bool back = both_sides && along >= 0.5;
     float side_area = both_sides ? 0.5 * own : own;
     // Numbers are counted from the first one of the side: areas are not exact enough for millions of points.

@@ -5,6 +5,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/sobol.glsl"
 #include "lib/emitters.glsl"
+#include "path/mirrors.glsl"
 #include "path/mis.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -134,6 +135,9 @@ bool sample_light(uint path, out vec4 connection[2], out vec3 light_of_lobes[2],
     }
     light_of_lobes[0] = arriving * diffuse.value * weight_of_next(light, diffuse.density, by_light.x);
     light_of_lobes[1] = arriving * specular.value * weight_of_next(light, specular.density, by_light.y);
+    if (MIRRORS != 0u && is_beyond_mirrors(texelFetch(path_flags, int(path)).x, push.depth, vertex.matter.alpha)) {
+        light_of_lobes[1] = vec3(0.0);
+    }
     vec3 origin = offset_ray_origin(vertex.position_rs, side > 0.0 ? vertex.geometric_normal : -vertex.geometric_normal);
     // Aimed from where the ray starts: an emitter close by must not hide itself.
     bool far = light.distance > 1e37;
@@ -149,7 +153,8 @@ void main() {
     vec4 connection[2];
     vec3 light_of_lobes[2];
     bool light_behind;
-    bool wanted = path != NO_PATH && sample_light(path, connection, light_of_lobes, light_behind);
+    bool shown = path != NO_PATH && (MIRRORS == 0u || is_within_mirrors(texelFetch(path_flags, int(path)).x, push.depth));
+    bool wanted = shown && sample_light(path, connection, light_of_lobes, light_behind);
     if (wanted) {
         uint flags = texelFetch(path_flags, int(path)).x;
         bool split = push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u;

@@ -5,6 +5,7 @@
 #include "groups/scene_rays.glsl"
 #include "lib/color.glsl"
 #include "lib/sobol.glsl"
+#include "path/mirrors.glsl"
 #include "path/mis.glsl"
 #include "path/queue.glsl"
 #include "path/state.glsl"
@@ -37,6 +38,9 @@ uint flags_after(uint flags, uint lobe, bool behind) {
     } else if (push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u) {
         slot = diffuse ? SLOT_DIFFUSE : SLOT_CAUSTICS;
     }
+    bool mirrored = MIRRORS != 0u && FROM_LIGHT == 0u;
+    bool reflects = !diffuse && mirrors_of(flags) == push.depth;
+    kept |= !mirrored ? 0u : reflects ? min(push.depth + 1u, 255u) << MIRRORS_SHIFT : flags & MIRRORS_MASK;
     return slot | (diffuse ? kept & ~FLAG_ALL_SPECULAR : kept | FLAG_LAST_SPECULAR);
 }
 
@@ -68,6 +72,12 @@ bool scatter(uint path) {
         return false;
     }
     if (UNMIRRORED != 0u && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && lights_mirrored(new_flags[path])) {
+        return false;
+    }
+    if (MIRRORS != 0u && FROM_LIGHT == 0u && !is_within_mirrors(new_flags[path], push.depth)) {
+        return false;
+    }
+    if (MIRRORS != 0u && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && is_beyond_mirrors(new_flags[path], push.depth, vertex.matter.alpha)) {
         return false;
     }
     if (drawn.density <= 0.0 || side * drawn.direction.z <= 0.0) {

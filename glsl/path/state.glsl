@@ -30,7 +30,7 @@ bool lights_mirrored(uint flags) {
 }
 
 // A path that a light sends to a target carries the triangle's number in the bits above; one that scattered the
-// density with which light paths are sent to the last vertex, the upper half of a float.
+// density with which light paths are sent to the last vertex, the upper half of a float. Between them lie the bits of path/mirrors.glsl.
 const uint TARGET_SHIFT = 8u;
 const uint TARGETS_TOLD_APART = 0xFFFFFFu;
 const uint DENSITY_MASK = 0xFFFF0000u;

@@ -39,8 +39,8 @@ pub struct References<'a> {
     made: HashMap<Kind, Rc<Reference>>,
 }
 
-/// What the references of a scene differ in: the limit of bounces, which caustics, and where in a pixel light is sampled.
-type Kind = (Option<u32>, CausticPaths, PixelFilter);
+/// What the references of a scene differ in: which light they show, and where in a pixel it is sampled.
+type Kind = (LightPaths, PixelFilter);
 
 impl<'a> References<'a> {
     /// The references of `subject` at `size`, of `spp` samples per pixel, light sampled where in a pixel a contender does.
@@ -52,13 +52,14 @@ impl<'a> References<'a> {
         cache: Option<&'a Cache>,
         mut progress: impl FnMut(Progress) + 'a,
     ) -> References<'a> {
-        References::by(move |(bounces, caustics, filter)| {
+        References::by(move |(LightPaths { bounces, caustics, mirrors }, filter)| {
             let request = ReferenceRequest {
                 size,
                 camera: subject.camera.clone(),
                 estimator: Estimator::Path,
                 bounces,
                 caustics,
+                mirrors,
                 filter,
                 seed: 0,
             };
@@ -79,25 +80,28 @@ impl<'a> References<'a> {
     pub fn compare(&mut self, finished: &mut Finished, settings: &Settings) -> Result<(), ErrorsUnknown> {
         let Some(images) = &finished.images else { return Ok(()) };
         let filter = settings.filter();
-        let (equal, full) = (self.equal_to(settings, filter)?, self.get((None, CausticPaths::All, filter))?);
+        let (equal, full) = (self.equal_to(settings, filter)?, self.get((LightPaths::default(), filter))?);
         let (equally, fully) = (errors(images, &equal)?, errors(images, &full)?);
         let bounces = settings.bounces();
         let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].into_iter();
         let filled = indirect.filter(|slot| settings.methods.fills(*slot));
         let limits = filled.map(|slot| (slot.name().to_owned(), settings.light_paths(slot).bounces));
         let slot_bounces: BTreeMap<String, Option<u32>> = limits.filter(|(_, limit)| *limit != bounces).collect();
-        let compared = |spp, bounces, caustics: CausticPaths, slot_bounces| Compared {
+        let fills_specular = settings.methods.fills(Slot::Specular);
+        let mirrors = settings.light_paths(Slot::Specular).mirrors.filter(|_| fills_specular);
+        let compared = |spp, bounces, caustics: CausticPaths, slot_bounces, mirrors| Compared {
             technique: estimator_name(Estimator::Path).to_owned(),
             spp,
             bounces,
             caustics: caustics.name().to_owned(),
             slot_bounces,
+            mirrors,
         };
         let equal_caustics = settings.light_paths(Slot::Caustics).caustics;
         let run = std::mem::take(&mut finished.run);
         finished.run = Run {
-            reference: Some(compared(equal.spp, bounces, equal_caustics, slot_bounces)),
-            reference_full: Some(compared(full.spp, None, CausticPaths::All, BTreeMap::new())),
+            reference: Some(compared(equal.spp, bounces, equal_caustics, slot_bounces, mirrors)),
+            reference_full: Some(compared(full.spp, None, CausticPaths::All, BTreeMap::new(), None)),
             error: Some(equally.errors),
             error_full: Some(fully.errors),
             noise: Some(equally.noise),
@@ -111,10 +115,7 @@ impl<'a> References<'a> {
 
     /// The slots as far as the methods go, each from the reference that is limited like it.
     fn equal_to(&mut self, settings: &Settings, filter: PixelFilter) -> Result<Rc<Reference>, ErrorsUnknown> {
-        let kind_of = |slot| {
-            let LightPaths { bounces, caustics } = settings.light_paths(slot);
-            (bounces, caustics, filter)
-        };
+        let kind_of = |slot| (settings.light_paths(slot), filter);
         let whole = self.get(kind_of(Slot::Diffuse))?;
         if Slot::ALL.into_iter().all(|slot| kind_of(slot) == kind_of(Slot::Diffuse)) {
             return Ok(whole);
@@ -222,7 +223,7 @@ mod tests {
     #[test]
     fn slots_are_compared_with_the_light_paths_that_methods_account_for() {
         let mut asked = Vec::new();
-        let mut references = References::by(|(bounces, ..)| {
+        let mut references = References::by(|(LightPaths { bounces, .. }, _)| {
             asked.push(bounces);
             Ok(reference(bounces))
         });
@@ -274,7 +275,7 @@ mod tests {
         assert!(error.contains("no light"), "{error}");
         assert_eq!(finished.run, example_run());
 
-        let mut references = References::by(|(bounces, ..)| Ok(reference(bounces)));
+        let mut references = References::by(|(LightPaths { bounces, .. }, _)| Ok(reference(bounces)));
         if let Some(images) = &mut finished.images {
             images.slots.insert(Slot::Direct, ColorImage { size: SIZE, pixels: vec![[f32::NAN; 3]; 48] });
         }

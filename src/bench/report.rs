@@ -248,6 +248,9 @@ pub struct Reference {
     /// The limits of slots that have another one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub slot_bounces: BTreeMap<String, Option<u32>>,
+    /// Reflections and refractions at most between the eye and what mirrors show, in the slot `specular`, the bounces of which are those before that then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirrors: Option<u32>,
 }
 
 /// What could not be run, and why.

@@ -44,6 +44,9 @@ pub(crate) struct ReferenceArgs {
     /// behind one surface of glass in the slot specular
     #[arg(long, value_parser = caustics(), default_value = "all")]
     caustics: CausticPaths,
+    /// Reflections and refractions at most between the eye and what mirrors and glass show; --bounces limits the way of light to that then [default: they are bounces]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=254))]
+    mirrors: Option<u32>,
     /// Where in a pixel light is sampled
     #[arg(long, value_parser = values::pixel_filter(), default_value = "center")]
     filter: PixelFilter,
@@ -117,6 +120,7 @@ fn make(
         estimator: args.estimator,
         bounces: args.bounces,
         caustics: args.caustics,
+        mirrors: args.mirrors,
         filter: args.filter,
         seed: args.seed,
     };

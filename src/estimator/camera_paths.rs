@@ -98,7 +98,7 @@ pub(super) fn advance(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene,
 
 /// Next-event estimation, where a further bounce is allowed.
 pub(super) fn find_light(graph: &mut Graph<'_>, paths: &Paths, scene: &TracedScene, view: &View, depth: u32) {
-    if scene.emitter_count == 0 || view.bounces.is_some_and(|bounces| depth > bounces) {
+    if scene.emitter_count == 0 || view.camera_bounces().is_some_and(|bounces| depth > bounces) {
         return;
     }
     let light = shaders::Light {

@@ -58,7 +58,7 @@ impl Samples {
     /// The same of a picture.
     pub(crate) fn of(self, size: [u32; 2], camera: &CameraView) -> EstimateRequest {
         let Samples { spp: _, bounces, caustics, filter, seed } = self;
-        EstimateRequest { size, camera: camera.clone(), bounces, caustics, filter, seed }
+        EstimateRequest { size, camera: camera.clone(), bounces, caustics, mirrors: None, filter, seed }
     }
 }
 

@@ -104,7 +104,7 @@ impl PathTracer {
                     }
                     camera_paths::generate(&mut graph, &paths, view, &wave);
                 }
-                let until = last_depth(view, depth, 1);
+                let until = last_depth(view.camera_bounces(), depth, 1);
                 for depth in depth..until {
                     camera_paths::advance(&mut graph, &paths, &scene, view, depth);
                 }
@@ -165,7 +165,7 @@ impl PathTracer {
                         }
                         light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
                     }
-                    let until = last_depth(view, depth, 0);
+                    let until = last_depth(view.bounces, depth, 0);
                     for depth in depth..until {
                         light_paths::advance(&mut graph, &paths, &splats, &scene, view, depth);
                     }
@@ -215,7 +215,7 @@ impl Estimating for PathTracer {
         let paths = Paths::declare(&mut graph, &scene, view, capacity(&scene, view, 1));
         let sums = Sums::declare(&mut graph, &wave);
         camera_paths::generate(&mut graph, &paths, view, &wave);
-        for depth in 0..last_depth(view, 0, 1).min(2) {
+        for depth in 0..last_depth(view.camera_bounces(), 0, 1).min(2) {
             camera_paths::advance(&mut graph, &paths, &scene, view, depth);
         }
         sums.add(&mut graph, &paths, &wave);
@@ -267,7 +267,7 @@ fn capacity(scene: &TracedScene, view: &View, count: u32) -> u32 {
 }
 
 /// Up to which vertex a submission goes that starts with vertex number `depth`; the last vertex has number `bounces + beyond`.
-fn last_depth(view: &View, depth: u32, beyond: u32) -> u32 {
-    let all = view.bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(1 + beyond));
+fn last_depth(bounces: Option<u32>, depth: u32, beyond: u32) -> u32 {
+    let all = bounces.map_or(u32::MAX, |bounces| bounces.saturating_add(1 + beyond));
     (depth + DEPTHS_PER_SUBMISSION).min(all)
 }

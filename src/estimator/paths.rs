@@ -33,6 +33,11 @@ impl Walk {
     }
 
     /// The piece that the passes are counted to.
+    /// Scatterings at most between the light and the first visible surface, those in mirrors included.
+    fn bounces(self, view: &View) -> Option<u32> {
+        if self == Walk::FromLight { view.bounces } else { view.camera_bounces() }
+    }
+
     fn pass(self, pass: &str) -> String {
         let piece = if self == Walk::FromLight { "particle" } else { "path" };
         format!("{piece}/{pass}")
@@ -49,6 +54,9 @@ pub(super) struct Variants {
     pub(super) specular_caustics: u32,
     /// The slot `specular` leaves out caustics, and has lamps behind the first surface's glass.
     pub(super) unmirrored: u32,
+    /// Reflections and refractions between the eye and what mirrors show at most, and scatterings from there on; 0: they are scatterings like others.
+    pub(super) mirrors: u32,
+    pub(super) bounces: u32,
 }
 
 impl Variants {
@@ -58,6 +66,8 @@ impl Variants {
             photons: 0,
             specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
             unmirrored: u32::from(view.caustics == CausticPaths::Unmirrored),
+            mirrors: view.mirrors.unwrap_or(0),
+            bounces: view.bounces.unwrap_or(u32::MAX),
         }
     }
 }
@@ -140,6 +150,8 @@ impl Paths {
             photons: self.variants.photons,
             specular_caustics: self.variants.specular_caustics,
             unmirrored: self.variants.unmirrored,
+            mirrors: self.variants.mirrors,
+            bounces: self.variants.bounces,
         }
     }
 
@@ -176,7 +188,7 @@ impl Paths {
         self.surface(graph, scene, view, walk, depth);
         meet(graph);
         // What scatters at the first visible surface is no bounce, and that is where the paths of the camera begin.
-        if view.bounces.is_none_or(|bounces| depth + walk.flag() <= bounces) {
+        if walk.bounces(view).is_none_or(|bounces| depth + walk.flag() <= bounces) {
             self.scatter(graph, scene, view, walk, depth);
         }
         self.tally(graph, walk, depth);
@@ -219,7 +231,7 @@ impl Paths {
     /// What it is made of; where nothing scatters the paths end.
     fn surface(&self, graph: &mut Graph<'_>, scene: &TracedScene, view: &View, walk: Walk, depth: u32) {
         let active = self.active(depth);
-        let ends = view.bounces.is_some_and(|bounces| depth > bounces);
+        let ends = walk.bounces(view).is_some_and(|bounces| depth > bounces);
         let pixels = view.size.map(|side| side as f32);
         let surface = shaders::Surface {
             scene_rays: self.rays.clone(),

@@ -19,6 +19,8 @@ pub(crate) struct EstimateRequest {
     /// Scatterings between the light and the first visible surface at most; `None`: no limit.
     pub(crate) bounces: Option<u32>,
     pub(crate) caustics: CausticPaths,
+    /// As in [`crate::slot::LightPaths`].
+    pub(crate) mirrors: Option<u32>,
     pub(crate) filter: PixelFilter,
     pub(crate) seed: u32,
 }
@@ -30,6 +32,7 @@ pub(crate) struct View {
     pub(crate) camera: types::Camera,
     pub(crate) bounces: Option<u32>,
     pub(crate) caustics: CausticPaths,
+    pub(crate) mirrors: Option<u32>,
     pub(crate) filter: PixelFilter,
     pub(crate) seed: u32,
 }
@@ -42,6 +45,7 @@ impl View {
             camera: camera(&request.camera, request.size, origin),
             bounces: request.bounces,
             caustics: request.caustics,
+            mirrors: request.mirrors,
             filter: request.filter,
             seed: request.seed,
         }
@@ -50,6 +54,11 @@ impl View {
     /// Pixels, and photon paths a pass.
     pub(super) fn pixel_count(&self) -> f32 {
         self.size[0] as f32 * self.size[1] as f32
+    }
+
+    /// Scatterings of the camera's paths beyond the first visible surface at most.
+    pub(super) fn camera_bounces(&self) -> Option<u32> {
+        self.bounces.map(|bounces| bounces.saturating_add(self.mirrors.unwrap_or(0)))
     }
 
     /// Light paths of the path tracer a sample.

@@ -21,6 +21,7 @@ pub(super) struct Ask {
     pub(super) camera: CameraView,
     pub(super) bounces: Option<u32>,
     pub(super) caustics: CausticPaths,
+    pub(super) mirrors: Option<u32>,
     pub(super) filter: PixelFilter,
     pub(super) seed: u32,
     /// Of each half.
@@ -37,6 +38,7 @@ impl Ask {
             camera,
             bounces: None,
             caustics: CausticPaths::All,
+            mirrors: None,
             filter: PixelFilter::Box,
             seed: 0,
             samples,
@@ -75,6 +77,7 @@ impl Tracer {
             camera: ask.camera.clone(),
             bounces: ask.bounces,
             caustics: ask.caustics,
+            mirrors: ask.mirrors,
             filter: ask.filter,
             seed: ask.seed,
         });

@@ -14,6 +14,7 @@ fn made(session: &Session, scene: &Scene, estimator: Estimator, bounces: Option<
         estimator,
         bounces,
         caustics: CausticPaths::All,
+        mirrors: None,
         filter: PixelFilter::Box,
         seed: 0,
     };

@@ -18,6 +18,7 @@ fn request(scene: &Scene) -> ReferenceRequest {
         estimator: Estimator::Path,
         bounces: Some(1),
         caustics: CausticPaths::All,
+        mirrors: None,
         filter: PixelFilter::Center,
         seed: 0,
     }

@@ -17,7 +17,15 @@ use crate::slot::{CausticPaths, PixelFilter};
 const SIZE: [u32; 2] = [64, 64];
 
 fn request(size: [u32; 2], camera: CameraView, bounces: Option<u32>) -> EstimateRequest {
-    EstimateRequest { size, camera, bounces, caustics: CausticPaths::All, filter: PixelFilter::Box, seed: 0 }
+    EstimateRequest {
+        size,
+        camera,
+        bounces,
+        caustics: CausticPaths::All,
+        mirrors: None,
+        filter: PixelFilter::Box,
+        seed: 0,
+    }
 }
 
 /// Means of all slots over all pixels and channels.

@@ -11,7 +11,7 @@ use crate::renderer::{
     DiffuseMethod, DirectMethod, Frame, FrameRequest, Preset, Settings, Slot, SpecularMethod, Technique, Timing,
 };
 use crate::scene::{CameraView, Light, LightId, LightKind, Material, Scene};
-use crate::slot::{CausticPaths, PixelFilter};
+use crate::slot::{CausticPaths, LightPaths, PixelFilter};
 
 const SIZE: [u32; 2] = [64, 48];
 
@@ -157,6 +157,51 @@ fn mirrors_metal_plastic_and_glass_are_those_of_paths() {
         let [direct, specular] = by_paths(&session, &scene, &camera, 64);
         assert_close(&format!("direct by {what}"), &pixels(&frame, Slot::Direct), &direct, 0.03, 0.1);
         assert_close(&format!("specular by {what}"), &pixels(&frame, Slot::Specular), &specular, most, 0.08);
+    }
+}
+
+/// A mirror and a rough metal wall face each other in a grey room.
+fn facing_mirrors() -> (Scene, CameraView) {
+    let mut scene = Scene::empty("facing mirrors");
+    let grey = scene.add_material(lambert([0.6; 3])).expect("sound");
+    let mirror =
+        scene.add_material(Material { base_color: [0.9, 0.8, 0.7, 1.0], roughness: 0.15, ..mirror() }).expect("sound");
+    let rough = Material { base_color: [0.9, 0.8, 0.7, 1.0], metallic: 1.0, roughness: 0.4, ..Material::default() };
+    let rough = scene.add_material(rough).expect("sound");
+    place(&mut scene, box_faces([1.0; 3], [mirror, rough, grey, grey, grey, grey]), DAffine3::IDENTITY);
+    // Paths do not find a point's light by way of mirrors behind other surfaces.
+    let lamp = scene.add_material(Material { emissive: [5.0; 3], ..lambert([0.0; 3]) }).expect("sound");
+    let corners = [[-0.4, 0.9, -0.4], [0.4, 0.9, -0.4], [0.4, 0.9, 0.4], [-0.4, 0.9, 0.4]];
+    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
+    (scene, view(DVec3::new(0.4, 0.1, 0.9), DVec3::new(-1.0, -0.2, -0.3)))
+}
+
+/// As many reflections as there are to be, of as many bounces as the method of the slot `diffuse` makes.
+#[test]
+fn mirrors_show_what_the_references_limits_say() {
+    let session = Session::open();
+    let (scene, camera) = facing_mirrors();
+    for (depth, bounces) in [(1, Some(0)), (2, Some(1)), (8, Some(1)), (3, None)] {
+        let mut settings = traced(Technique::Particles);
+        settings.trace.depth = depth;
+        settings.particles.bounces = bounces;
+        let LightPaths { bounces: limit, caustics, mirrors } = settings.light_paths(Slot::Specular);
+        let ask = Ask {
+            bounces: limit,
+            caustics,
+            mirrors,
+            filter: PixelFilter::Center,
+            ..Ask::new(SIZE, 96, camera.clone())
+        };
+        let truth = Tracer::new(&session).trace(&scene, &ask).slot(Slot::Specular);
+        let frame = slots(&session, &scene, &settings, &camera);
+        assert_close(
+            &format!("depth {depth}, {bounces:?} steps"),
+            &pixels(&frame, Slot::Specular),
+            &truth,
+            0.015,
+            0.04,
+        );
     }
 }
 

@@ -38,6 +38,7 @@ impl About {
         let key = ReferenceKey::of(scene, request);
         let [width, height] = request.size;
         let bounces = request.bounces.map_or("unlimited".to_owned(), |bounces| bounces.to_string());
+        let bounces = request.mirrors.map_or(bounces.clone(), |mirrors| format!("{bounces} before {mirrors} mirrors"));
         let values = [
             key.as_str().to_owned(),
             REFERENCE_VERSION.to_string(),

@@ -19,13 +19,17 @@ impl ReferenceKey {
 
     /// The key of what `request` asks of `scene`.
     pub fn of(scene: &Scene, request: &ReferenceRequest) -> ReferenceKey {
-        let ReferenceRequest { size, camera, estimator, bounces, caustics, filter, seed } = request;
+        let ReferenceRequest { size, camera, estimator, bounces, caustics, mirrors, filter, seed } = request;
         let mut digest = Digest::new("reference");
         digest.u32s(&[REFERENCE_VERSION, super::CHUNK_SAMPLES, Slot::ALL.len() as u32]);
         digest.bytes(&scene.content_hash()).u32s(size);
         add_camera(&mut digest, camera);
         digest.text(estimator_name(*estimator)).text(caustics.name()).text(filter.name());
         digest.option(*bounces, |digest, bounces| digest.u32s(&[bounces])).u32s(&[*seed]);
+        // Without such a limit the keys are those of before there was one.
+        if let Some(mirrors) = mirrors {
+            digest.text("mirrors").u32s(&[*mirrors]);
+        }
         ReferenceKey(hexadecimal(&digest.finish()))
     }
 

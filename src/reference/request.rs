@@ -40,6 +40,9 @@ pub struct ReferenceRequest {
     pub bounces: Option<u32>,
     /// Which light the slot `caustics` shows.
     pub caustics: CausticPaths,
+    /// Reflections and refractions at most between the eye and what mirrors and glass show, if these are no bounces
+    /// ([`LightPaths::mirrors`](crate::slot::LightPaths::mirrors)).
+    pub mirrors: Option<u32>,
     /// Where in a pixel light is sampled.
     pub filter: PixelFilter,
     /// Which of the equally good sequences of samples is taken.
@@ -59,13 +62,14 @@ pub(super) fn source<'a>(
     scene: &Scene,
     request: &ReferenceRequest,
 ) -> Result<Box<dyn SampleSource + 'a>, Error> {
-    let ReferenceRequest { size, camera, estimator, bounces, caustics, filter, seed } = request.clone();
+    let ReferenceRequest { size, camera, estimator, bounces, caustics, mirrors, filter, seed } = request.clone();
     let device = context.shared_device();
-    let request = EstimateRequest { size, camera, bounces, caustics, filter, seed: seed ^ SEEDS_OF_REFERENCES };
+    let request =
+        EstimateRequest { size, camera, bounces, caustics, mirrors, filter, seed: seed ^ SEEDS_OF_REFERENCES };
     let scene = || TracedScene::new(device, scene).map(Arc::new);
     let running = match estimator {
         Estimator::Path => Path::open(context.pipelines())?,
-        Estimator::Sppm if caustics != CausticPaths::All => return Err(Error::SppmCaustics),
+        Estimator::Sppm if caustics != CausticPaths::All || mirrors.is_some() => return Err(Error::SppmCaustics),
         Estimator::Sppm => Sppm::open(context.pipelines())?,
         Estimator::Auto => return Ok(Box::new(AutoSource::new(context, &scene()?, &request)?)),
     };

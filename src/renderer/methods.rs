@@ -217,6 +217,23 @@ impl Settings {
         if specular.caustics == CausticPaths::Unmirrored {
             return specular;
         }
+        let own = self.own_light_paths(slot, indirect);
+        match own.mirrors {
+            // What mirrors show is as bright as what the method of the slot `diffuse` says of it.
+            Some(_) => LightPaths { bounces: self.mirrored_bounces(), ..own },
+            None => own,
+        }
+    }
+
+    /// Scatterings between the light and what mirrors show, at most.
+    fn mirrored_bounces(&self) -> Option<u32> {
+        match self.methods.filler(Slot::Diffuse) {
+            Some(Filler::Method(method)) if method.lights_mirrored => self.light_paths(Slot::Diffuse).bounces,
+            _ => Some(0),
+        }
+    }
+
+    fn own_light_paths(&self, slot: Slot, indirect: bool) -> LightPaths {
         match self.methods.filler(slot).filter(|_| indirect) {
             Some(Filler::Method(method)) => (method.light_paths)(self),
             Some(Filler::Estimator(estimator)) => (estimator.light_paths)(self),
@@ -254,6 +271,21 @@ mod tests {
         let caustics = |slot| of(Technique::Particles).light_paths(slot).caustics;
         assert_eq!([Slot::Direct, Slot::Specular].map(caustics), [CausticPaths::Unmirrored; 2]);
         assert_eq!([Slot::Emission, Slot::Diffuse, Slot::Caustics].map(caustics), [CausticPaths::All; 3]);
+        let specular = |changes: &[(&str, &str)]| {
+            let mut settings = of(Technique::Particles);
+            changes.iter().for_each(|(key, value)| settings.set(key, value).expect("a setting"));
+            let LightPaths { bounces, mirrors, .. } = settings.light_paths(Slot::Specular);
+            (bounces, mirrors, settings.light_paths(Slot::Direct) == settings.light_paths(Slot::Specular))
+        };
+        assert_eq!(specular(&[]), (None, Some(8), true));
+        assert_eq!(specular(&[("particles.bounces", "2"), ("trace.depth", "3")]), (Some(3), Some(3), true));
+        // What mirrors show is lit directly alone where the method of the slot `diffuse` says nothing of it.
+        let mut rsm = of(Technique::Rsm);
+        rsm.methods.specular = of(Technique::Particles).methods.specular;
+        assert_eq!(
+            (rsm.light_paths(Slot::Specular).bounces, rsm.light_paths(Slot::Diffuse).bounces),
+            (Some(0), Some(1))
+        );
         let filled = |technique| Slot::ALL.into_iter().filter(move |slot| of(technique).methods.fills(*slot));
         assert!(filled(Technique::Direct).eq([Slot::Emission, Slot::Direct]));
         assert!(filled(Technique::Rsm).eq([Slot::Emission, Slot::Direct, Slot::Diffuse]));

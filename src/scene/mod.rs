@@ -52,7 +52,7 @@ mod light;
 mod load_options;
 mod material;
 mod mesh;
-mod rays;
+pub(crate) mod rays;
 mod sampling;
 mod shining;
 mod split;

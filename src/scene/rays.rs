@@ -1,4 +1,4 @@
-//! Rays against all triangles of a scene: what an automatic view sees.
+//! Rays against all triangles of a scene: what an automatic view sees, and which backs of surfaces others see.
 //!
 //! The triangles are sorted along a Morton curve and cut into equal runs, the leaves of a complete binary tree whose nodes are
 //! numbered as in a heap. Such a tree is built in some ten milliseconds for 260,000 triangles, which matters more here than the
@@ -12,7 +12,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// Of larger scenes every k-th triangle is kept, so that neither time nor memory grow without bound.
-const MOST_TRIANGLES: u64 = 1 << 21;
+pub(crate) const MOST_TRIANGLES: u64 = 1 << 21;
 /// Bits of a sort key: the triangle's index below, then a Morton code of three axes, then its class of size.
 const INDEX_BITS: u32 = 22;
 const AXIS_BITS: u32 = 13;
@@ -26,12 +26,14 @@ struct Triangle([Vec3; 3]);
 
 /// What a ray meets first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hit {
+pub(crate) struct Hit {
     /// In lengths of the ray's direction.
     pub(super) distance: f32,
+    /// The place of the triangle among those of the tree.
+    place: usize,
     /// Whether it is the front of the surface, by winding alone: the walls of a room are often double-sided, but their fronts
     /// look inwards all the same.
-    pub(super) front: bool,
+    pub(crate) front: bool,
 }
 
 /// A point of a surface, drawn by area.
@@ -43,8 +45,10 @@ pub(super) struct SurfacePoint {
 }
 
 /// The triangles of a scene, ready for rays.
-pub(super) struct Rays {
+pub(crate) struct Rays {
     triangles: Vec<Triangle>,
+    /// Of each, its number among those that were given.
+    numbers: Vec<u32>,
     /// Smallest and largest corner of each node; the children of node `n` are `2n` and `2n + 1`, the root is 1.
     boxes: Vec<[Vec3; 2]>,
     leaves: usize,
@@ -86,21 +90,32 @@ impl Triangle {
         let distance = ac.dot(around) / determinant;
         // A determinant of 0 leaves no number that passes.
         let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance.is_finite();
-        inside.then_some(Hit { distance, front: determinant > 0.0 })
+        inside.then_some(Hit { distance, place: 0, front: determinant > 0.0 })
     }
 }
 
 impl Rays {
     /// The triangles of `scene`, whose bounds have this centre and radius.
     pub(super) fn new(scene: &Scene, bounds: &Bounds, radius: f64) -> Rays {
-        let unsorted = triangles(scene, bounds, radius);
+        Rays::among(&triangles(scene, bounds, radius))
+    }
+
+    /// Triangles by their corners, around the origin and no farther from it than 2; as many as sort keys can number.
+    pub(crate) fn of(corners: impl Iterator<Item = [Vec3; 3]>) -> Rays {
+        let triangles: Vec<Triangle> = corners.map(Triangle).collect();
+        Rays::among(&triangles)
+    }
+
+    fn among(unsorted: &[Triangle]) -> Rays {
         let mut keys: Vec<u64> =
             unsorted.par_iter().enumerate().map(|(index, triangle)| triangle.sort_key(index)).collect();
         keys.par_sort_unstable();
         let index = |key: u64| (key & ((1 << INDEX_BITS) - 1)) as usize;
         let triangles: Vec<Triangle> = keys.par_iter().map(|&key| unsorted[index(key)]).collect();
+        let numbers = keys.par_iter().map(|&key| index(key) as u32).collect();
         let leaves = triangles.len().div_ceil(LEAF_TRIANGLES).next_power_of_two();
-        let mut rays = Rays { triangles, boxes: vec![[Vec3::INFINITY, Vec3::NEG_INFINITY]; 2 * leaves], leaves };
+        let mut rays =
+            Rays { triangles, numbers, boxes: vec![[Vec3::INFINITY, Vec3::NEG_INFINITY]; 2 * leaves], leaves };
         let join = |a: [Vec3; 2], b: [Vec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         for leaf in 0..leaves {
             let bounds = rays.leaf(leaf).iter().map(Triangle::bounds).reduce(join);
@@ -113,12 +128,20 @@ impl Rays {
     }
 
     fn leaf(&self, leaf: usize) -> &[Triangle] {
-        let start = |leaf: usize| leaf * self.triangles.len() / self.leaves;
-        &self.triangles[start(leaf)..start(leaf + 1)]
+        &self.triangles[self.start(leaf)..self.start(leaf + 1)]
+    }
+
+    fn start(&self, leaf: usize) -> usize {
+        leaf * self.triangles.len() / self.leaves
+    }
+
+    /// The number of the triangle that was hit.
+    pub(crate) fn number(&self, hit: &Hit) -> usize {
+        self.numbers[hit.place] as usize
     }
 
     /// The first surface that a ray meets nearer than `limit` lengths of its direction.
-    pub(super) fn first(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<Hit> {
+    pub(crate) fn first(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<Hit> {
         let inverse = direction.recip();
         let enters = |node: usize, limit: f32| {
             let [low, high] = self.boxes[node].map(|corner| (corner - origin) * inverse);
@@ -134,9 +157,10 @@ impl Rays {
         loop {
             while let Some(node) = current.take() {
                 if node >= self.leaves {
-                    for triangle in self.leaf(node - self.leaves) {
+                    let start = self.start(node - self.leaves);
+                    for (place, triangle) in (start..).zip(self.leaf(node - self.leaves)) {
                         let hit = triangle.hit(origin, direction).filter(|hit| hit.distance < reach(&nearest));
-                        nearest = hit.or(nearest);
+                        nearest = hit.map(|hit| Hit { place, ..hit }).or(nearest);
                     }
                     break;
                 }

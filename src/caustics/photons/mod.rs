@@ -57,7 +57,7 @@ impl Method for Photons {
     type Options = PhotonOptions;
 
     fn light_paths(options: &PhotonOptions) -> LightPaths {
-        LightPaths { bounces: Some(options.bounces), caustics: CausticPaths::Specular }
+        LightPaths { bounces: Some(options.bounces), caustics: CausticPaths::Specular, mirrors: None }
     }
 
     fn inputs(options: &PhotonOptions) -> Inputs {

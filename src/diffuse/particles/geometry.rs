@@ -1,6 +1,7 @@
 //! The geometry stage: particles on the surfaces, what they stand for, links between them, and the lists by which their irradiance is read. It stands while
 //! geometry and materials do.
 
+use super::events::Levels;
 use super::kept::{Chunk, Kept};
 use super::links::link;
 use super::lists::list;
@@ -24,6 +25,8 @@ pub(super) struct ParticleSpace {
     pub(super) count: u32,
     /// 1: normal maps turn surfaces against their particles.
     pub(super) turns: u32,
+    /// How light is told apart by specular events.
+    pub(super) levels: Levels,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
     /// First facet of each triangle and how it is cut; the particle that stands for each facet (glsl/particles/facets.glsl).
@@ -54,7 +57,8 @@ impl ParticleSpace {
         // Where particles lie would depend on where things are.
         let adaptive = options.density == ParticleDensity::Adaptive && !scene.facts.animated;
         let placed = Placed::declare(graph, scene, particle_count, adaptive);
-        let kept = Kept::declare(graph, scene, options, particle_count);
+        let levels = Levels::new(scene, options);
+        let kept = Kept::declare(graph, scene, options, (particle_count, levels));
         let moved = scene.motion.as_ref().filter(|motion| !adaptive && kept.carry_on(graph, motion.from));
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);
@@ -68,6 +72,7 @@ impl ParticleSpace {
         ParticleSpace {
             count: particle_count,
             turns: u32::from(scene.facts.normal_mapped),
+            levels,
             rays,
             group,
             facets,

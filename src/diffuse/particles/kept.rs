@@ -1,5 +1,6 @@
 //! What is kept of particles from one geometry to the next, so that where a part of the surfaces moved the rest need not be done again.
 
+use super::events::Levels;
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -24,6 +25,8 @@ pub(super) struct Kept {
     rest: u64,
     surfaces: u64,
     pub(super) sky_shines: bool,
+    /// Of the sky's light.
+    pub(super) sky_levels: Levels,
     /// Where the second ends of links for scattering begin.
     pub(super) second_ends: u32,
     /// First facet of each triangle and how it is cut (glsl/particles/facets.glsl), the number of facets behind all of them.
@@ -49,7 +52,7 @@ impl Kept {
         graph: &mut Graph<'_>,
         scene: &TracedScene,
         options: &ParticlesOptions,
-        particle_count: u32,
+        (particle_count, levels): (u32, Levels),
     ) -> Kept {
         let &ParticlesOptions { scatter, gather, emitter_samples, density, .. } = options;
         let count = particle_count as usize;
@@ -63,6 +66,8 @@ impl Kept {
         let second_ends = scatter * scatter * particle_count;
         let ends = if scene.facts.specular { 2 } else { 1 };
         let arrival_words = if scene.emissive_count > 0 { 9 } else { 3 };
+        let sky_levels = if sky_shines { levels } else { Levels::default() };
+        let arrival_words = arrival_words + 3 * sky_levels.late() as usize;
         Kept {
             rest: hash_of(&(
                 scene.emission_key(),
@@ -72,9 +77,12 @@ impl Kept {
                 emitter_samples,
                 sky_shines,
                 density,
+                scene.backs(),
+                sky_levels,
             )),
             surfaces: scene.surfaces_key(),
             sky_shines,
+            sky_levels,
             second_ends,
             facets: graph.carried_buffer("particles.facets", 2 * (scene.triangle_count as usize + 1)),
             facet_size: graph.carried_buffer("particles.facet_size", 1),

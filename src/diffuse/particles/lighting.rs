@@ -6,7 +6,7 @@ use super::links::lobes_of;
 use super::options::{ParticleTransport, ParticlesOptions};
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
-use crate::graph::bindings::BufferRef;
+use crate::graph::bindings::{BufferRef, ReadWriteBuffer, TexelBuffer};
 use crate::shaders::particles::{
     Bounce, BouncePush, Emit, EmitPush, FluxScale, FluxScalePush, Glints, GlintsPush, Radiance, RadiancePush, Scatter,
     ScatterPush,
@@ -14,13 +14,13 @@ use crate::shaders::particles::{
 
 /// What the stage leaves.
 pub(super) struct Lighting {
-    /// What lights gave each particle, W.
+    /// What lights gave each particle, W; behind these what they gave by way of specular events, where those are counted.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests add it up"))]
     pub(super) emitted: BufferRef<[f32; 4]>,
     /// Steps of fixed-point numbers a watt.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it"))]
     pub(super) scale: BufferRef<[f32; 4]>,
-    /// What each received in every scattering step, where light is scattered.
+    /// What each received in every scattering step, where light is scattered and specular events are not counted.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests add it up"))]
     pub(super) received: Vec<BufferRef<u32>>,
     /// What each sends out, W/(m² sr).
@@ -37,7 +37,8 @@ pub(super) fn light(
 ) -> Lighting {
     let particle_count = space.count;
     let threads = [particle_count, 1, 1];
-    let emitted = graph.buffer::<[f32; 4]>("particles.emitted", particle_count as usize);
+    let levels = space.levels;
+    let emitted = graph.buffer::<[f32; 4]>("particles.emitted", (levels.count() * particle_count) as usize);
     let sample_count = if scene.emissive_count > 0 { options.emitter_samples } else { 0 };
     let (glints, steps_a_watt) = glints(graph, scene, space, options);
     let pass = Emit {
@@ -49,6 +50,7 @@ pub(super) fn light(
         glints: glints.unwrap_or(space.arrivals).read(),
         has_glints: u32::from(glints.is_some()),
         has_emitters: u32::from(scene.emissive_count > 0),
+        event_levels: levels.told_apart,
         flux: emitted.write(),
         push: EmitPush {
             particle_count,
@@ -65,7 +67,7 @@ pub(super) fn light(
     let rays = u64::from(particle_count) * u64::from(scene.punctual_count + sample_count);
     graph.pass("diffuse/particles/light/emit", pass).note("rays", rays).threads(threads);
     let scale = graph.buffer::<[f32; 4]>("particles.scale", 1);
-    let push = FluxScalePush { particle_count };
+    let push = FluxScalePush { flux_count: levels.count() * particle_count };
     let pass = FluxScale { flux: emitted.texels(FLOATS4), scale: scale.write(), push };
     graph.pass("diffuse/particles/light/scale", pass).groups([1, 1, 1]);
 
@@ -94,54 +96,86 @@ fn scatter(
     let particle_count = space.count;
     let threads = [particle_count, 1, 1];
     let link_count = options.scatter * options.scatter;
+    let levels = space.levels;
+    let ring_size = levels.ring(steps);
+    let sums = |graph: &mut Graph<'_>, name: &str, count: u32| {
+        let sums = graph.buffer::<u32>(&format!("particles.received.{name}"), (3 * count * particle_count) as usize);
+        graph.fill_buffer(&format!("diffuse/particles/light/clear.{name}"), sums, 0);
+        sums
+    };
+    let ring = (levels.late() > 0).then(|| sums(graph, "ring", ring_size));
     let mut total = emitted;
     let mut received: Vec<BufferRef<u32>> = Vec::new();
     for number in 0..steps {
-        let next = graph.buffer::<u32>(&format!("particles.received.{number}"), 3 * particle_count as usize);
-        graph.fill_buffer(&format!("diffuse/particles/light/clear.{number}"), next, 0);
+        let next = ring.unwrap_or_else(|| sums(graph, &number.to_string(), 1));
         if number == 0 {
             total = graph.buffer::<[f32; 4]>("particles.total", particle_count as usize);
         }
         let pass = Scatter {
-            first: u32::from(number == 0),
+            from_lights: u32::from(number < levels.count()),
+            from_steps: u32::from(number > 0),
             second_ends: u32::from(scene.facts.specular),
-            broad_lobes: u32::from(number == 0 && scene.facts.broad),
+            broad_lobes: u32::from(number < levels.count() && scene.facts.broad),
+            event_levels: levels.told_apart,
             matter: space.matter.texels(FLOATS4),
             emitted: emitted.texels(FLOATS4),
             scatter_links: space.scatter_links.texels(WORD),
             scale: scale.texels(FLOATS4),
-            received: received.last().unwrap_or(&space.arrivals).texels(WORD),
+            received: received.last().map_or(TexelBuffer::absent(), |received| received.texels(WORD)),
             next: next.read_write(),
             total: if number == 0 { total.start_then_read() } else { total.read_write() },
-            push: ScatterPush { particle_count, link_count, number },
+            push: ScatterPush { particle_count, link_count, number, step_count: steps, ring: ring_size },
         };
         graph.pass(&format!("diffuse/particles/light/scatter.{number}"), pass).threads(threads);
-        received.push(next);
+        if ring.is_none() {
+            received.push(next);
+        }
     }
-    let radiance = radiance_of(graph, space, Emission { emitted, scale }, received.last().map(|last| (total, *last)));
+    let last = match ring {
+        Some(ring) => Some((ring, steps % ring_size * particle_count)),
+        None => received.last().map(|last| (*last, 0)),
+    };
+    let late = (steps > 0 && steps < levels.count()).then_some((emitted, steps * particle_count));
+    let scattered = last.map(|(last, first)| Scattered { total, last, first });
+    let radiance = radiance_of(graph, space, Emission { emitted, scale }, scattered, late);
     Lighting { emitted, scale, received, radiance }
 }
 
-/// What all particles send out, of what lights gave them and of what they were scattered: all before the last step, and the last step's.
+/// What particles were scattered: all with what lights gave before the last step, and the last step's from the particle `first` on.
+#[derive(Clone, Copy)]
+struct Scattered {
+    total: BufferRef<[f32; 4]>,
+    last: BufferRef<u32>,
+    first: u32,
+}
+
+/// What all particles send out, of what lights gave them, what they were scattered, and what lights gave `late`, from a particle on.
 fn radiance_of(
     graph: &mut Graph<'_>,
     space: &ParticleSpace,
     Emission { emitted, scale }: Emission,
-    scattered: Option<(BufferRef<[f32; 4]>, BufferRef<u32>)>,
+    scattered: Option<Scattered>,
+    late: Option<(BufferRef<[f32; 4]>, u32)>,
 ) -> BufferRef<[f32; 4]> {
     let radiance = graph.buffer::<[f32; 4]>("particles.radiance", space.count as usize);
     let pass = Radiance {
         scattered: u32::from(scattered.is_some()),
+        has_late: u32::from(late.is_some()),
+        late: late.map_or(TexelBuffer::absent(), |(late, _)| late.texels(FLOATS4)),
         particles: space.group.clone(),
         matter: space.matter.texels(FLOATS4),
         emitted: emitted.texels(FLOATS4),
-        total: scattered.map_or(emitted, |(total, _)| total).texels(FLOATS4),
+        total: scattered.map_or(TexelBuffer::absent(), |scattered| scattered.total.texels(FLOATS4)),
         scale: scale.texels(FLOATS4),
-        received: scattered.map_or(space.arrivals, |(_, last)| last).texels(WORD),
+        received: scattered.map_or(TexelBuffer::absent(), |scattered| scattered.last.texels(WORD)),
         list_lengths: space.list_lengths.texels(WORD),
         lists: space.lists.texels(WORD),
         radiance: radiance.write(),
-        push: RadiancePush { particle_count: space.count },
+        push: RadiancePush {
+            particle_count: space.count,
+            received_first: scattered.map_or(0, |scattered| scattered.first),
+            late_first: late.map_or(0, |(_, first)| first),
+        },
     };
     graph.pass("diffuse/particles/light/radiance", pass).threads([space.count, 1, 1]);
     radiance
@@ -155,33 +189,52 @@ fn gather(
     options: &ParticlesOptions,
     (Emission { emitted, scale }, bounces): (Emission, u32),
 ) -> Lighting {
-    let mut radiance = radiance_of(graph, space, Emission { emitted, scale }, None);
     let scatter_count = options.scatter * options.scatter;
+    let levels = space.levels;
+    let counted = levels.late() > 0;
+    let ring_size = levels.ring(bounces);
+    let ring = counted.then(|| graph.buffer::<[f32; 4]>("particles.radiance.ring", (ring_size * space.count) as usize));
+    let mut radiance = (!counted).then(|| radiance_of(graph, space, Emission { emitted, scale }, None, None));
     let mut other = graph.buffer::<[f32; 4]>("particles.radiance.other", space.count as usize);
-    for bounce in 0..bounces {
+    // Where events are counted, the first is what lights gave.
+    let passes = bounces + u32::from(counted);
+    for bounce in 0..passes {
+        let last = bounce + 1 == passes;
         for (number, chunk) in space.chunks.iter().enumerate() {
+            let into = |whole: BufferRef<[f32; 4]>, first: bool| {
+                if first && number == 0 { whole.start_then_read() } else { whole.read_write() }
+            };
             let pass = Bounce {
+                last: u32::from(counted && last),
+                event_levels: levels.told_apart,
                 second_ends: u32::from(scene.facts.specular),
                 broad_lobes: u32::from(scene.facts.broad),
                 links: chunk.links.texels(WORD),
                 scatter_links: space.scatter_links.texels(WORD),
-                radiance: radiance.texels(FLOATS4),
+                radiance: radiance.map_or(TexelBuffer::absent(), |radiance| radiance.texels(FLOATS4)),
                 matter: space.matter.texels(FLOATS4),
                 emitted: emitted.texels(FLOATS4),
-                next: if number == 0 { other.start_then_read() } else { other.read_write() },
+                next: if counted && !last { ReadWriteBuffer::absent() } else { into(other, true) },
+                earlier: ring.map_or(ReadWriteBuffer::absent(), |ring| into(ring, bounce == 0)),
                 push: BouncePush {
                     first: chunk.first,
                     count: chunk.count,
                     link_count: options.gather * options.gather,
                     scatter_count,
                     second_ends: scatter_count * space.count,
+                    number: bounce + 1,
+                    ring: ring_size,
+                    particle_count: space.count,
                 },
             };
             let pass = graph.pass(&format!("diffuse/particles/light/gather.{bounce}.{number}"), pass);
             pass.threads([chunk.count, 1, 1]);
         }
-        std::mem::swap(&mut radiance, &mut other);
+        if let Some(radiance) = radiance.as_mut() {
+            std::mem::swap(radiance, &mut other);
+        }
     }
+    let radiance = radiance.unwrap_or(other);
     Lighting { emitted, scale, received: Vec::new(), radiance }
 }
 
@@ -195,17 +248,19 @@ fn glints(
     // A channel may carry several times the luminance, and all of it may land on one particle.
     let steps_a_watt = f64::from(1_u32 << 31) / (16.0 * scene.power.max(1e-30));
     let target_count = scene.target_shares.count;
-    let reason = match (target_count, scene.emitter_count, options.photons) {
+    let levels = space.levels;
+    let reason = match (target_count, scene.emitter_count, options.photons, levels.told_apart) {
         (0, ..) => Some("nothing glossy that lights reach"),
-        (_, 0, _) => Some("no light but the sky"),
-        (.., 0) => Some("no photons asked for"),
+        (_, 0, ..) => Some("no light but the sky"),
+        (_, _, 0, _) => Some("no photons asked for"),
+        (.., 1) => Some("reflections are more bounces than asked for"),
         _ => None,
     };
     if let Some(reason) = reason {
         graph.skip("diffuse/particles/light/glints", reason);
         return (None, steps_a_watt);
     }
-    let glints = graph.buffer::<u32>("particles.glints", 3 * space.count as usize);
+    let glints = graph.buffer::<u32>("particles.glints", (3 * levels.late().max(1) * space.count) as usize);
     graph.fill_buffer("diffuse/particles/light/clear-glints", glints, 0);
     let photon_count = options.photons;
     let pass = Glints {
@@ -213,6 +268,7 @@ fn glints(
         scene_lights: scene.lights(graph),
         light_targets: scene.targets(graph),
         lobes: lobes_of(scene),
+        event_levels: levels.told_apart,
         glints: glints.read_write(),
         facets: space.facets.texels(WORDS2),
         homes: space.homes.texels(WORD),
@@ -221,6 +277,7 @@ fn glints(
             emitter_count: scene.emitter_count,
             target_count,
             steps_a_watt: steps_a_watt as f32,
+            particle_count: space.count,
         },
     };
     let pass = graph.pass("diffuse/particles/light/glints", pass).note("photons", u64::from(photon_count));

@@ -52,6 +52,7 @@ pub(super) fn link(graph: &mut Graph<'_>, scene: &TracedScene, options: &Particl
             },
             arrivals: arrivals.read_write(),
             has_emitters: u32::from(scene.emissive_count > 0),
+            event_levels: kept.sky_levels.told_apart,
             lobes: lobes_of(scene),
             lost: lost.read_write(),
             head,
@@ -69,6 +70,7 @@ pub(super) fn link(graph: &mut Graph<'_>, scene: &TracedScene, options: &Particl
                 emitter_samples: options.emitter_samples as f32,
                 greatest_radiance: scene.greatest_radiance,
                 again: u32::from(again.is_some()),
+                particle_count: stage.particle_count,
             },
         };
         let mut pass = graph.pass(&format!("diffuse/particles/link/trace.{number}"), pass).leaves(links, key);
@@ -140,10 +142,11 @@ fn touched_links(
         });
     let pass = ArrivalsAgain {
         has_emitters: u32::from(emits),
+        event_levels: kept.sky_levels.told_apart,
         head: again.head.texels(WORD),
         states: states.texels(WORD),
         arrivals: kept.arrivals.read_write(),
-        push: ArrivalsAgainPush { first, count },
+        push: ArrivalsAgainPush { first, count, particle_count: kept.list_lengths.count() as u32 },
     };
     graph.pass(&format!("diffuse/particles/link/arrivals.{number}"), pass).threads([count, 1, 1]);
     again

@@ -2,7 +2,7 @@
 
 use super::formats::{FLOAT, FLOATS4, WORD, WORDS2, WORDS4};
 use super::moved::{AgainList, Moved, groups_of_list};
-use super::place::Placed;
+use super::place::{Placed, backs_of};
 use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
@@ -62,6 +62,8 @@ fn cut(graph: &mut Graph<'_>, Stage { placed, kept, .. }: &Stage) {
     let pass = FacetSizes {
         scene_rays: placed.rays.clone(),
         areas: placed.areas.texels(FLOAT),
+        has_backs: u32::from(placed.backs.is_some()),
+        backs: backs_of(placed.backs),
         sizes: sizes.write(),
         push: FacetSizesPush { triangle_count },
     };

@@ -6,6 +6,7 @@
 //! 2. Lighting stage (`lighting.rs`): emission, scattering. Stands while the camera alone moves.
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
 
+mod events;
 mod formats;
 mod geometry;
 mod kept;

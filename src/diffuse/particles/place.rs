@@ -3,8 +3,8 @@
 
 use super::formats::{FLOAT, WORD, WORDS4};
 use crate::frame::rays::TracedScene;
-use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::{Dependence, Graph};
 use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::groups::{Particles, SceneRays};
 use crate::shaders::particles::{
@@ -22,6 +22,8 @@ pub(super) struct Placed {
     /// Diffuse area of each triangle, m², of both sides where both count.
     pub(super) areas: BufferRef<f32>,
     pub(super) spacing: BufferRef<f32>,
+    /// A bit for each one-sided triangle whose back counts too, where there are any.
+    pub(super) backs: Option<BufferRef<u32>>,
     pub(super) group: Particles,
 }
 
@@ -32,11 +34,20 @@ impl Placed {
         let triangle_count = scene.triangle_count;
         let threads = [particle_count, 1, 1];
         let areas = graph.buffer::<f32>("particles.areas", triangle_count as usize);
+        let marks = scene.backs();
+        let backs = (!marks.is_empty()).then(|| graph.upload("particles.backs", marks, Dependence::GEOMETRY));
         let push = AreasPush { triangle_count };
-        let pass = Areas { scene_rays: rays.clone(), own_areas: scene.own_areas(graph), areas: areas.write(), push };
+        let pass = Areas {
+            scene_rays: rays.clone(),
+            own_areas: scene.own_areas(graph),
+            areas: areas.write(),
+            has_backs: u32::from(backs.is_some()),
+            backs: backs_of(backs),
+            push,
+        };
         graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
 
-        let weighted = adaptive.then(|| weigh(graph, scene, &rays, (areas, particle_count)));
+        let weighted = adaptive.then(|| weigh(graph, scene, &rays, (areas, particle_count), backs));
         let cell_count = weighted.map_or(triangle_count, |weighted| weighted.count() as u32);
         let cells = graph.buffer::<[u32; 4]>("particles.cells", cell_count as usize + 1);
         let spacing = graph.buffer::<f32>("particles.spacing", 1);
@@ -62,6 +73,8 @@ impl Placed {
             places: places.write(),
             buckets: buckets.write(),
             counts: counts.read_write(),
+            has_backs: u32::from(backs.is_some()),
+            backs: backs_of(backs),
             push: PlacePush { cell_count, particle_count, bucket_count },
         };
         let pass = graph.pass("diffuse/particles/place/points", pass);
@@ -110,7 +123,7 @@ impl Placed {
             particle_spacing: spacing.uniform(),
             particle_entries: entries.texels(WORDS4),
         };
-        Placed { rays, triangle_count, areas, spacing, group }
+        Placed { rays, triangle_count, areas, spacing, backs, group }
     }
 }
 
@@ -120,6 +133,7 @@ fn weigh(
     scene: &TracedScene,
     rays: &SceneRays,
     (areas, particle_count): (BufferRef<f32>, u32),
+    backs: Option<BufferRef<u32>>,
 ) -> BufferRef<[u32; 4]> {
     let triangle_count = scene.triangle_count;
     let particles_an_area = f64::from(particle_count) / scene.own_area.max(1e-300);
@@ -138,9 +152,16 @@ fn weigh(
         scene_rays: rays.clone(),
         areas: areas.texels(FLOAT),
         starts: starts.texels(WORD),
+        has_backs: u32::from(backs.is_some()),
+        backs: backs_of(backs),
         cells: weighted.write(),
         push: CellWeightsPush { triangle_count, cell_room, spacing: particles_an_area.sqrt().recip() as f32 },
     };
     graph.pass("diffuse/particles/place/weights", pass).threads([cell_room, 1, 1]);
     weighted
+}
+
+/// As passes bind them.
+pub(super) fn backs_of(backs: Option<BufferRef<u32>>) -> TexelBuffer {
+    backs.map_or(TexelBuffer::absent(), |backs| backs.texels(WORD))
 }

@@ -1,6 +1,7 @@
 //! The scene as rays meet it, for whatever sends rays: methods, estimators.
 
 mod alias_table;
+mod backs;
 mod emissive_cells;
 mod emitters;
 mod hierarchy;

@@ -34,6 +34,10 @@ pub(super) struct Part {
 }
 
 impl Part {
+    pub(super) fn triangles(&self) -> Range<usize> {
+        self.triangles.clone()
+    }
+
     /// Whether it is the same thing, wherever it stands.
     fn is(&self, other: &Part) -> bool {
         let Instance { node, mesh, primitive, world: _, flips_winding } = self.instance;

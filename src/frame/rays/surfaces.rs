@@ -1,10 +1,11 @@
 //! The surfaces as rays meet them: all instances flattened to triangles in render space, their corners' attributes, and the hierarchy of their boxes. It stands
 //! while geometry and materials do, whatever shines on it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+use super::backs::backs;
 use super::hierarchy::hierarchy;
 use super::looks::Looks;
 use super::motion::{Motion, Part, motion, parts};
@@ -38,6 +39,10 @@ pub(crate) struct Surfaces {
     /// How it came of what was before, if a part of the surfaces moved and nothing else happened.
     pub(crate) motion: Option<Motion>,
     parts: Vec<Part>,
+    /// By material.
+    one_sided: Vec<bool>,
+    /// As [`Surfaces::backs`] gives them, once they have been asked for.
+    backs: OnceLock<Vec<u32>>,
     pub(super) triangles: Vec<TracedTriangle>,
     /// Of each triangle that matters, m², the same bits wherever it moves; 0 for others.
     areas: Vec<f32>,
@@ -78,6 +83,9 @@ impl Surfaces {
         let bvh = hierarchy(&triangles, &looks.cutouts, least_offset);
         let cut = |triangle: &TracedTriangle| looks.cutouts[triangle.material as usize] == Cutout::PerPoint;
         let parts = parts(scene);
+        let motion = before.and_then(|before| before.motion_to(&parts, &triangles, &areas, [origin, middle_rs]));
+        // What is kept of particles while things move goes by their numbers, and these by the sides that have some.
+        let backs = before.filter(|_| motion.is_some()).map(|before| before.backs.clone());
         let Corners { colors, texcoords, tangents } = &corners;
         Ok(Surfaces {
             key,
@@ -91,8 +99,10 @@ impl Surfaces {
             fine_size: fine_size(areas.iter().map(|&area| f64::from(area))),
             own_area: areas.iter().map(|&area| f64::from(area)).sum(),
             area: triangles.iter().filter(matters).map(TracedTriangle::area).sum(),
-            motion: before.and_then(|before| before.motion_to(&parts, &triangles, &areas, [origin, middle_rs])),
+            motion,
             parts,
+            one_sided: scene.materials().iter().map(|material| !material.double_sided).collect(),
+            backs: backs.unwrap_or_default(),
             own_areas: Uploaded::new(device, "traced.areas", &areas, FLOAT, key)?,
             areas,
             nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
@@ -101,6 +111,13 @@ impl Surfaces {
             texcoords: Uploaded::new(device, "traced.corner_texcoords", texcoords, FLOATS, key)?,
             tangents: Uploaded::new(device, "traced.corner_tangents", tangents, FLOATS, key)?,
             triangles,
+        })
+    }
+
+    /// A bit for each triangle of one-sided parts whose backs other surfaces see, in words; none where no back is. While things move, those seen at first.
+    pub(crate) fn backs(&self) -> &[u32] {
+        self.backs.get_or_init(|| {
+            backs((&self.triangles, &self.areas), &self.parts, &self.one_sided, (self.middle_rs, self.radius))
         })
     }
 

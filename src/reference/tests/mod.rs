@@ -83,6 +83,7 @@ pub(super) fn request(size: [u32; 2]) -> ReferenceRequest {
         estimator: Estimator::Path,
         bounces: None,
         caustics: CausticPaths::All,
+        mirrors: None,
         filter: PixelFilter::Center,
         seed: 0,
     }

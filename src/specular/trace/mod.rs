@@ -29,8 +29,8 @@ impl Method for Trace {
     const SLOT: Slot = Slot::Specular;
     type Options = TraceOptions;
 
-    fn light_paths(_: &TraceOptions) -> LightPaths {
-        LightPaths { bounces: None, caustics: CausticPaths::Unmirrored }
+    fn light_paths(options: &TraceOptions) -> LightPaths {
+        LightPaths { bounces: None, caustics: CausticPaths::Unmirrored, mirrors: Some(options.depth) }
     }
 
     fn inputs(options: &TraceOptions) -> Inputs {

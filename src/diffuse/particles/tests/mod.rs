@@ -1,5 +1,7 @@
 //! Particles against closed forms, against paths, and what stands when something moves.
 
+mod backs;
+mod events;
 mod lamps;
 mod moving;
 mod receivers;

@@ -27,7 +27,7 @@ fn count(frame: &Frame, pass: &str, name: &str) -> u64 {
 }
 
 /// The mean difference of two pictures, over the mean of the second.
-fn difference(found: &Frame, expected: &Frame) -> f64 {
+pub(super) fn difference(found: &Frame, expected: &Frame) -> f64 {
     let [found, expected] = [found, expected].map(|frame| &frame.slots[&Slot::Diffuse].pixels);
     let values = || found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (f64::from(*a), f64::from(*b)));
     let sum: f64 = values().map(|(_, b)| b).sum();
@@ -36,7 +36,7 @@ fn difference(found: &Frame, expected: &Frame) -> f64 {
 }
 
 /// Moves a scene twice: what is made of it is what a fresh renderer makes, up to `most`, though less than `share` of the links are traced again.
-fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64, f64), step: impl Fn(&mut Scene, u32)) {
+pub(super) fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64, f64), step: impl Fn(&mut Scene, u32)) {
     let (session, settings) = (Session::open(), settings(3000));
     let mut renderer = session.renderer(&settings);
     renderer.render(scene, &asked(camera)).expect("a frame");
@@ -59,7 +59,7 @@ fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64, f64), step
 }
 
 /// A block of 0.4 m.
-fn add_block(scene: &mut Scene, at: DVec3) -> NodeId {
+pub(super) fn add_block(scene: &mut Scene, at: DVec3) -> NodeId {
     let material = scene.add_material(lambert([0.6, 0.3, 0.2])).expect("a sound material");
     let mut faces = box_faces([0.2; 3], [material; 6]);
     for face in &mut faces {
@@ -68,7 +68,7 @@ fn add_block(scene: &mut Scene, at: DVec3) -> NodeId {
     place(scene, faces, DAffine3::from_translation(at))
 }
 
-fn shift_and_turn(scene: &mut Scene, node: NodeId) {
+pub(super) fn shift_and_turn(scene: &mut Scene, node: NodeId) {
     let Node { mut local, .. } = scene.nodes()[node.0];
     local.translation += DVec3::new(0.04, 0.0, 0.02);
     local.matrix3 = glam::DMat3::from_quat(DQuat::from_rotation_y(0.1)) * local.matrix3;
