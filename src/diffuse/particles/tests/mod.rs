@@ -1,6 +1,7 @@
 //! Particles against closed forms, against paths, and what stands when something moves.
 
 mod lamps;
+mod mesh;
 mod moving;
 mod receivers;
 mod transport;
