@@ -11,6 +11,10 @@ use crate::shaders::particles::{MeshFill, MeshFillPush, MeshList, MeshListPush};
 
 /// Entries that a list has room for at first: twelve area particles lie within reach on a plane.
 const ENTRIES: usize = 14;
+/// Of as many as may be found one is: subtriangles that hang together share their corners.
+const FOUND: usize = 4;
+/// Entries for which there is room in any case.
+const LEAST: usize = 1 << 20;
 /// Groups along x.
 const MOST_GROUPS: u32 = 32_768;
 
@@ -74,7 +78,9 @@ impl EstimationLists {
         let pass = Starts { counts: lengths.texels(WORD), starts: starts.write(), push };
         graph.pass("diffuse/particles/lists/starts", pass).groups([1, 1, 1]);
 
-        let entries = graph.growing_buffer::<u32>("particles.estimation_entries", ENTRIES * count);
+        let all = ENTRIES * count;
+        let least = if of_all { all } else { all.min(LEAST).max(all / FOUND) };
+        let entries = graph.growing_buffer::<u32>("particles.estimation_entries", least);
         let pass = MeshFill {
             scene_rays: space.rays.clone(),
             particles: space.group.clone(),

@@ -9,7 +9,7 @@ use crate::gpu_tests::against_paths::leaks;
 use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Slot, Timing};
-use crate::scene::{CameraView, LightId, LightKind, Material, Node, Primitive, Scene};
+use crate::scene::{CameraView, LightId, LightKind, Material, Node, Primitive, Projection, Scene};
 
 fn mesh(options: ParticlesOptions) -> ParticlesOptions {
     ParticlesOptions { receivers: ParticlesReceivers::Mesh, ..options }
@@ -92,7 +92,10 @@ fn all_that_is_seen_is_evaluated_and_shared_points_are_one() {
 #[test]
 fn light_falls_off_whatever_the_order_of_corners() {
     let session = Session::open();
-    let shown = |indices: [u32; 6], options: ParticlesOptions| {
+    let perspective = view(DVec3::new(0.3, 2.2, 0.2), DVec3::new(0.1, 0.0, 0.1));
+    let projection = Projection::Orthographic { half_width: 1.3, half_height: 1.04, near: 0.1, far: 1e4 };
+    let parallel = CameraView { projection, ..perspective.clone() };
+    let shown = |indices: [u32; 6], camera: &CameraView, options: ParticlesOptions| {
         let mut scene = Scene::empty("floor and wall");
         let material = scene.add_material(lambert([0.8; 3])).expect("a sound material");
         let [a, b, c, d] = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]];
@@ -103,18 +106,20 @@ fn light_falls_off_whatever_the_order_of_corners() {
         let wall = quad([b, a, [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0]], material);
         place(&mut scene, vec![floor, wall], DAffine3::IDENTITY);
         add_light(&mut scene, LightKind::Point, DVec3::new(0.5, 1.0, 0.3), DVec3::NEG_Y, [1.0; 3]);
-        let camera = view(DVec3::new(0.3, 2.2, 0.2), DVec3::new(0.1, 0.0, 0.1));
         session.render(
             &scene,
             &settings(ParticlesOptions { gather: 16, spacing: 0.05, ..options }),
-            &asked(SIZE, camera),
+            &asked(SIZE, camera.clone()),
         )
     };
-    for order in [[0, 1, 2, 0, 2, 3], [2, 0, 1, 3, 0, 2], [1, 2, 0, 2, 3, 0], [0, 2, 3, 2, 0, 1]] {
+    let orders = [[0, 1, 2, 0, 2, 3], [2, 0, 1, 3, 0, 2], [1, 2, 0, 2, 3, 0], [0, 2, 3, 2, 0, 1]];
+    for (order, camera) in orders.into_iter().map(|order| (order, &perspective)).chain([(orders[0], &parallel)]) {
         let every_pixel = ParticlesOptions { receivers: ParticlesReceivers::Pixels, ..options(3000, 0) };
-        let [mean, pixels, blocks] = difference(&shown(order, mesh(options(3000, 0))), &shown(order, every_pixel));
+        let [found, expected] = [mesh(options(3000, 0)), every_pixel].map(|options| shown(order, camera, options));
+        let [mean, pixels, blocks] = difference(&found, &expected);
         println!("{order:?}: mean {mean:.4}, pixels {pixels:.4}, blocks {blocks:.4}");
         assert!((mean - 1.0).abs() < 5e-3 && pixels < 0.036 && blocks < 0.015, "{mean}, {pixels}, {blocks}");
+        assert_eq!(count(&found.timings.passes, "diffuse/particles/find/homes", "homes"), 0);
     }
 }
 
