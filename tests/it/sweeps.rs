@@ -58,7 +58,7 @@ fn the_grids_that_are_checked_in_are_sound() {
         ("quick", 6),
         ("rsm-path", 30),
         ("quyen", 120),
-        ("chang", 30),
+        ("chang", 36),
         ("particles-growth", 44),
         ("particles-growth-scenes", 14),
     ];

@@ -4,7 +4,8 @@
 //!
 //! 1. Geometry stage (`geometry.rs`): particles, their areas, links, lists. Stands while geometry and materials do.
 //! 2. Lighting stage (`lighting.rs`): emission, scattering. Stands while the camera alone moves.
-//! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle.
+//! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle, or interpolate
+//!    between radiance particles (`mesh/`).
 
 mod events;
 mod formats;
@@ -14,6 +15,7 @@ mod lighting;
 mod links;
 mod lists;
 mod measure;
+mod mesh;
 mod mirrored;
 mod moved;
 pub(crate) mod options;
@@ -71,7 +73,7 @@ impl Method for Particles {
         let steps = options.bounces.unwrap_or_else(|| steps_for(scene.greatest_albedo()));
         let space = ParticleSpace::declare(cx.graph, scene, options);
         let radiance = lighting::light(cx.graph, scene, &space, options, steps).radiance;
-        Ok(Some(shading::shade(cx, &space, shift, options, radiance)))
+        Ok(Some(shading::shade(cx, scene, &space, shift, options, radiance)))
     }
 }
 

@@ -12,6 +12,18 @@ choices! {
         Regions = "regions",
         /// At every pixel.
         Pixels = "pixels",
+        /// At the vertices of a tessellation of the surfaces that the picture shows, with interpolation between them: the paper.
+        Mesh = "mesh",
+    }
+}
+
+choices! {
+    /// Which radiance particles have estimation lists.
+    ParticleLists {
+        /// All of them, made with the geometry: the paper.
+        All = "all",
+        /// Those that the picture reads.
+        Used = "used",
     }
 }
 
@@ -54,6 +66,10 @@ options! {
     interleave: u32 = 1; OptionKind::OneOf(&[1, 4]), "parts", "falls";
     /// Where the picture reads the particles' irradiance.
     receivers: ParticlesReceivers = ParticlesReceivers::Regions; OptionKind::Choice(ParticlesReceivers::NAMES), "", "";
+    /// With `receivers=mesh` how far radiance particles are apart at most; 0: as area particles on average.
+    spacing: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
+    /// With `receivers=mesh` which radiance particles have estimation lists.
+    lists: ParticleLists = ParticleLists::Used; OptionKind::Choice(ParticleLists::NAMES), "", "";
     /// Photons from lights to mirrors and glass, and on to the first diffuse surface.
     photons: u32 = 200_000, draft = 40_000, high = 1_000_000; OptionKind::Integer(0, 8_000_000), "photons", "linear";
     /// Points of emissive surfaces that each particle sends a ray to.

@@ -2,10 +2,13 @@
 
 use super::formats::{FLOATS4, WORD};
 use super::geometry::ParticleSpace;
+use super::mesh::{self, MeshReceivers};
 use super::mirrored;
-use super::options::ParticlesOptions;
+use super::options::{ParticlesOptions, ParticlesReceivers};
 use super::receivers::Receivers;
 use crate::frame::mirrored::MirroredPoints;
+use crate::frame::rays::TracedScene;
+use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::FrameCx;
 use crate::shaders::particles::{Gather, GatherPush, Used, UsedPush};
@@ -13,6 +16,7 @@ use crate::shaders::particles::{Gather, GatherPush, Used, UsedPush};
 /// Declares the stage; returns the slot.
 pub(super) fn shade(
     cx: &mut FrameCx<'_, '_>,
+    scene: &TracedScene,
     space: &ParticleSpace,
     shift: [f32; 3],
     options: &ParticlesOptions,
@@ -21,26 +25,60 @@ pub(super) fn shade(
     let surface = cx.frame.surface;
     let (offers, points) = (&cx.frame.offers, cx.frame.offers.get::<MirroredPoints>());
     let graph = &mut *cx.graph;
-    let particle_count = space.count;
-    let marks = graph.buffer::<u32>("particles.marks", particle_count as usize);
+    let marks = graph.buffer::<u32>("particles.marks", space.count as usize);
     graph.fill_buffer("diffuse/particles/find/clear", marks, 0);
-    let receivers = Receivers::find(graph, surface, space, shift, options, marks);
-    let mirrored_homes = points.as_ref().map(|points| mirrored::mark(graph, space, points, marks));
-    let used = graph.buffer::<u32>("particles.used", particle_count as usize);
+    let used = graph.buffer::<u32>("particles.used", space.count as usize);
     let counts = graph.buffer::<u32>("particles.used_counts", 2);
     graph.fill_buffer("diffuse/particles/find/clear-used", used, 0);
     graph.fill_buffer("diffuse/particles/find/clear-counts", counts, 0);
+    if options.receivers == ParticlesReceivers::Mesh {
+        let seen = (surface, shift, points.as_deref());
+        let receivers = MeshReceivers::find(graph, scene, space, seen, options, marks);
+        receivers.mark_used(graph, used, counts);
+        mark_used(graph, space, marks, (used, counts));
+        let irradiance = gather(graph, space, options, used, radiance);
+        let (diffuse, mirrored) = mesh::light(graph, space, &receivers, seen, irradiance);
+        mirrored.into_iter().for_each(|light| offers.put(light));
+        return diffuse;
+    }
+    let receivers = Receivers::find(graph, surface, space, shift, options, marks);
+    let mirrored_homes = points.as_ref().map(|points| mirrored::mark(graph, space, points, marks));
+    mark_used(graph, space, marks, (used, counts));
+    let irradiance = gather(graph, space, options, used, radiance);
+    if let (Some(points), Some(homes)) = (&points, &mirrored_homes) {
+        offers.put(mirrored::light(graph, space, points, homes, irradiance));
+    }
+    receivers.light(graph, surface, space, shift, irradiance)
+}
+
+/// Marks the particles in the lists of those that are marked.
+fn mark_used(
+    graph: &mut Graph<'_>,
+    space: &ParticleSpace,
+    marks: BufferRef<u32>,
+    (used, counts): (BufferRef<u32>, BufferRef<u32>),
+) {
     let pass = Used {
         marks: marks.texels(WORD),
         list_lengths: space.list_lengths.texels(WORD),
         lists: space.lists.texels(WORD),
         used: used.read_write(),
         counts: counts.read_write(),
-        push: UsedPush { particle_count },
+        push: UsedPush { particle_count: space.count },
     };
     let pass = graph.pass("diffuse/particles/find/used", pass).count("homes", counts, 0).count("particles", counts, 1);
-    pass.threads([particle_count, 1, 1]);
+    pass.threads([space.count, 1, 1]);
+}
 
+/// The irradiance of those that are used.
+fn gather(
+    graph: &mut Graph<'_>,
+    space: &ParticleSpace,
+    options: &ParticlesOptions,
+    used: BufferRef<u32>,
+    radiance: BufferRef<[f32; 4]>,
+) -> BufferRef<[f32; 4]> {
+    let particle_count = space.count;
     let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", ((1 + space.turns) * particle_count) as usize);
     for (number, chunk) in space.chunks.iter().enumerate() {
         let pass = Gather {
@@ -61,8 +99,5 @@ pub(super) fn shade(
         };
         graph.pass(&format!("diffuse/particles/gather.{number}"), pass).threads([chunk.count, 1, 1]);
     }
-    if let (Some(points), Some(homes)) = (&points, &mirrored_homes) {
-        offers.put(mirrored::light(graph, space, points, homes, irradiance));
-    }
-    receivers.light(graph, surface, space, shift, irradiance)
+    irradiance
 }

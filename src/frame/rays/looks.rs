@@ -28,6 +28,8 @@ pub(super) struct Looks {
     pub(super) cutouts: Vec<Cutout>,
     /// The kinds of textures that any material reads, as the shaders' bits.
     pub(super) texture_kinds: u32,
+    /// How many sides of each material's surfaces have a diffuse lobe.
+    pub(super) diffuse_sides: Vec<u32>,
     /// The largest share of light that some material with a diffuse lobe reflects, textures aside.
     pub(super) greatest_albedo: f64,
 }
@@ -55,6 +57,7 @@ impl Looks {
             sobol: Uploaded::new(device, "traced.sobol", &sobol_points(), WORDS, hash_of(&"sobol"))?,
             cutouts: all.iter().map(|material| cutout(material, scene.textures(), facts.vertex_colors)).collect(),
             texture_kinds: all.iter().fold(0, |kinds, material| kinds | texture_kinds(material)),
+            diffuse_sides: all.iter().map(diffuse_sides).collect(),
             greatest_albedo: all.iter().map(reflected).fold(0.0, f64::max),
         })
     }
@@ -62,6 +65,14 @@ impl Looks {
     pub(super) fn bytes(&self) -> u64 {
         let all = [&self.materials, &self.media, &self.uses, &self.table, &self.texels, &self.sobol];
         all.iter().map(|list| list.bytes()).sum()
+    }
+}
+
+fn diffuse_sides(material: &Material) -> u32 {
+    match (reflected(material) > 0.0, material.double_sided) {
+        (false, _) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
     }
 }
 

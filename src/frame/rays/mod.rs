@@ -10,6 +10,7 @@ mod motion;
 mod sobol;
 mod surfaces;
 mod targets;
+mod tessellation;
 #[cfg(test)]
 mod tests;
 mod texels;
@@ -20,4 +21,5 @@ mod uploaded;
 pub(crate) use self::motion::Motion;
 pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;
+pub(crate) use self::tessellation::Tessellation;
 pub(crate) use self::traced_scene::{TracedScene, traced_key};

@@ -1,7 +1,7 @@
 //! The surfaces as rays meet them: all instances flattened to triangles in render space, their corners' attributes, and the hierarchy of their boxes. It stands
 //! while geometry and materials do, whatever shines on it.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
@@ -9,6 +9,7 @@ use super::backs::backs;
 use super::hierarchy::hierarchy;
 use super::looks::Looks;
 use super::motion::{Motion, Part, motion, parts};
+use super::tessellation::Tessellation;
 use super::triangles::{Corners, TracedTriangle, flatten};
 use super::uploaded::{BYTES, FLOAT, FLOATS, Uploaded, WORDS};
 use crate::graph::hash_of;
@@ -46,6 +47,8 @@ pub(crate) struct Surfaces {
     pub(super) triangles: Vec<TracedTriangle>,
     /// Of each triangle that matters, m², the same bits wherever it moves; 0 for others.
     areas: Vec<f32>,
+    /// The last one that was asked for, with its spacing.
+    tessellation: Mutex<Option<(f64, Arc<Tessellation>)>>,
     pub(super) own_areas: Uploaded,
     pub(super) nodes: Uploaded,
     pub(super) leaves: Uploaded,
@@ -103,6 +106,7 @@ impl Surfaces {
             parts,
             one_sided: scene.materials().iter().map(|material| !material.double_sided).collect(),
             backs: backs.unwrap_or_default(),
+            tessellation: Mutex::new(None),
             own_areas: Uploaded::new(device, "traced.areas", &areas, FLOAT, key)?,
             areas,
             nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
@@ -132,6 +136,26 @@ impl Surfaces {
         let stands = self.origin == origin && self.middle_rs == middle_rs && self.areas == areas;
         let (before, after) = ((&self.parts[..], &self.triangles[..]), (parts, triangles));
         if stands { motion(self.key, before, after) } else { None }
+    }
+
+    /// Points closer to each other than `spacing` metres; `sides`: of each material, those that take diffuse light. The last one stands.
+    pub(super) fn tessellation(&self, spacing: f64, sides: &[u32]) -> Arc<Tessellation> {
+        let mut held = self.tessellation.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*held {
+            Some((known, tessellation)) if *known == spacing => tessellation.clone(),
+            _ => {
+                let made = Arc::new(Tessellation::new(&self.triangles, &self.areas, sides, spacing));
+                *held = Some((spacing, made.clone()));
+                made
+            }
+        }
+    }
+
+    /// Of the sides that take diffuse light, m².
+    pub(super) fn diffuse_area(&self, sides: &[u32]) -> f64 {
+        let areas = self.triangles.iter().zip(&self.areas);
+        let areas = areas.map(|(triangle, &area)| f64::from(area) * f64::from(sides[triangle.material as usize]));
+        areas.filter(|area| area.is_finite()).sum()
     }
 
     pub(super) fn bytes(&self) -> u64 {

@@ -7,6 +7,7 @@ use super::emitters::{EmitterTable, emitter_table};
 use super::looks::Looks;
 use super::surfaces::{Surfaces, surfaces_key};
 use super::targets::{Reach, TargetShares, targets};
+use super::tessellation::Tessellation;
 use super::uploaded::{FLOAT, Uploaded, WORDS};
 use crate::frame::light_set::{punctual_light, shining_lights};
 use crate::graph::bindings::TexelBuffer;
@@ -200,6 +201,16 @@ impl TracedScene {
     /// The area of each triangle that matters, as it stands wherever the triangle moves.
     pub(crate) fn own_areas(&self, graph: &mut Graph<'_>) -> TexelBuffer {
         self.surfaces.own_areas.texels(graph, Dependence::GEOMETRY)
+    }
+
+    /// Points of all diffuse surface, closer to each other than `spacing` metres.
+    pub(crate) fn tessellation(&self, spacing: f64) -> Arc<Tessellation> {
+        self.surfaces.tessellation(spacing, &self.looks.diffuse_sides)
+    }
+
+    /// The area of all sides with a diffuse lobe, m².
+    pub(crate) fn diffuse_area(&self) -> f64 {
+        self.surfaces.diffuse_area(&self.looks.diffuse_sides)
     }
 
     /// Names what emissive surfaces send out, wherever they stand.

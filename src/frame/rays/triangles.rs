@@ -33,6 +33,11 @@ impl TracedTriangle {
         [self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]]
     }
 
+    /// Packed, of one of its corners; `None`: it is flat.
+    pub(super) fn vertex_normal(&self, corner: usize) -> Option<u32> {
+        self.normals.map(|normals| normals[corner])
+    }
+
     /// The largest of its corners' distances from a point, metres.
     pub(super) fn farthest(&self, point: DVec3) -> f64 {
         self.corners.iter().map(|corner| corner.as_dvec3().distance(point)).fold(0.0, f64::max)

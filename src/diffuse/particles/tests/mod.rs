@@ -3,6 +3,7 @@
 mod backs;
 mod events;
 mod lamps;
+mod mesh;
 mod moving;
 mod receivers;
 mod transport;

@@ -9,11 +9,11 @@ use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Slot, Timing};
 use crate::scene::{LightKind, Material, Primitive, Scene, Texture, TextureRef, Wrap};
 
-const SIZE: [u32; 2] = [160, 128];
+pub(super) const SIZE: [u32; 2] = [160, 128];
 /// Of blocks, pixels.
 const BLOCK: usize = 8;
 
-fn frame(session: &Session, options: ParticlesOptions) -> Frame {
+pub(super) fn frame(session: &Session, options: ParticlesOptions) -> Frame {
     let scene = builtin("cornell-point");
     let camera = scene.camera_view(None).expect("its camera");
     let asked = FrameRequest { timing: Timing::Passes, ..request(SIZE, camera, &[Slot::Diffuse]) };
@@ -21,7 +21,7 @@ fn frame(session: &Session, options: ParticlesOptions) -> Frame {
 }
 
 /// The ratio of the means, and the error of pixels and of blocks over the mean.
-fn difference(found: &Frame, expected: &Frame) -> [f64; 3] {
+pub(super) fn difference(found: &Frame, expected: &Frame) -> [f64; 3] {
     let green = |frame: &Frame| frame.slots[&Slot::Diffuse].pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
     let [found, expected]: [Vec<f64>; 2] = [found, expected].map(green);
     let blocks = |pixels: &[f64]| -> Vec<f64> {
@@ -64,7 +64,7 @@ fn a_quarter_of_the_links_each_has_all_of_the_light() {
 }
 
 /// A room whose floor's normals are all turned by 30° towards -x or +x, where a lamp brightens the one wall.
-fn turned_floor(towards: f32) -> Scene {
+pub(super) fn turned_floor(towards: f32) -> Scene {
     let mut scene = closed_box(1.0, lambert([0.5; 3]));
     let component = |value: f32| (127.5 + 127.5 * value).round() as u8;
     let (along, up) = (component(towards * 0.5), component(0.75_f32.sqrt()));
