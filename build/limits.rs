@@ -16,6 +16,11 @@ pub(crate) const EXCEPTIONS: &[Exception] = &[
     },
     storage_buffers("path/generate", 5, "a path's state, in arrays of its own types, and the queue that it joins"),
     storage_buffers(
+        "particles/links",
+        6,
+        "both kinds of links and what they bring of light, and by which particles their ends are found",
+    ),
+    storage_buffers(
         "photon_splat/project",
         5,
         "discs, their places in cells, and what cells and grid sum up by atomics",

@@ -54,6 +54,10 @@ void count_facet(uint home, uvec3 albedo, uvec3 broad, uint area) {
     }
 }
 
+// How far from its edges a facet's corners are looked at, as a share of it, and how far above it, as a share of the spacing.
+const float INSIDE = 0.02;
+const float ABOVE_FACET = 0.01;
+
 uint triangle_of(uint facet) {
     uint low = 0u;
     uint high = push.triangle_count;
@@ -66,6 +70,20 @@ uint triangle_of(uint facet) {
         }
     }
     return low;
+}
+
+// Whether something stands on the facet: whether its corners do not see each other, across it.
+bool is_parted(Triangle triangle, Cuts cuts, uint number, vec3 face, float spacing) {
+    vec3 front = front_normal(triangle);
+    bool parted = false;
+    [[dont_unroll]] for (uint diagonal = 0u; diagonal < 2u && !parted; ++diagonal) {
+        vec2 low = vec2(INSIDE, diagonal == 0u ? INSIDE : 1.0 - INSIDE);
+        vec3 from = offset_ray_origin(point_of_triangle(triangle, place_in_facet(cuts, number, low), front), face);
+        vec3 to = offset_ray_origin(point_of_triangle(triangle, place_in_facet(cuts, number, 1.0 - low), front), face);
+        vec3 lift = ABOVE_FACET * spacing * face;
+        parted = is_occluded(from + lift, to - from, 1.0);
+    }
+    return parted;
 }
 
 void main() {
@@ -91,8 +109,8 @@ void main() {
     Hit above = closest_hit(start, normal, 2.0 * LIFT * spacing);
     float free = above.triangle == NO_TRIANGLE ? 3e38 : above.distance;
     uint home = home_of(position, normal, lifted(start, normal, normal, free, spacing));
-    uint before = homes[facet];
-    homes[facet] = home == NO_PARTICLE ? LOST_FACET : home;
+    uint before = home_of_word(homes[facet]);
+    homes[facet] = home == NO_PARTICLE ? LOST_FACET : home | (is_parted(triangle, cuts, facet - record.x, face, spacing) ? PARTED_FACET : 0u);
     // Alpha leaves nothing there; links may end beside its middle.
     bool is_there = ALPHA_MASKS == 0u || material.alpha_cutoff < 0.0 || is_covered(triangle, material, middle.xy);
     if (!is_there) {

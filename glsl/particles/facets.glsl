@@ -26,9 +26,8 @@ uint facets_of(Cuts cuts) {
     return cuts.columns * cuts.rows * cuts.sides;
 }
 
-// Of a point of a triangle, by the weights of corners 1 and 2.
-uint facet_of(usamplerBuffer facets, uint triangle, vec2 place, bool back) {
-    uvec2 record = texelFetch(facets, int(triangle)).xy;
+// Of a point of the triangle with that record, by the weights of corners 1 and 2.
+uint facet_of(uvec2 record, vec2 place, bool back) {
     Cuts cuts = unpack_cuts(record.y);
     if (facets_of(cuts) == 0u || (back && cuts.sides == 1u)) {
         return NO_FACET;
@@ -41,6 +40,17 @@ uint facet_of(usamplerBuffer facets, uint triangle, vec2 place, bool back) {
     return record.x + ((back ? cuts.rows : 0u) + row) * cuts.columns + column;
 }
 
+// Weights of corners 1 and 2 of a point of a facet, whose number is counted from the triangle's first one; `at`: along the row and across, from 0 to 1.
+vec2 place_in_facet(Cuts cuts, uint number, vec2 at) {
+    float height = (float(number / cuts.columns % cuts.rows) + at.y) / float(cuts.rows);
+    float along = (float(number % cuts.columns) + at.x) / float(cuts.columns);
+    vec3 weights;
+    weights[cuts.apex] = height;
+    weights[(cuts.apex + 1u) % 3u] = (1.0 - height) * along;
+    weights[(cuts.apex + 2u) % 3u] = (1.0 - height) * (1.0 - along);
+    return weights.yz;
+}
+
 // The middle of a facet, whose number is counted from the triangle's first one, as weights of corners 1 and 2, and its share of the triangle's area.
 vec3 middle_of_facet(Cuts cuts, uint number) {
     uint row = number / cuts.columns % cuts.rows;
@@ -48,12 +58,8 @@ vec3 middle_of_facet(Cuts cuts, uint number) {
     vec2 widths = 1.0 - heights;
     // Of a trapezoid's area, which is a triangle's at the apex.
     float height = heights.x + (heights.y - heights.x) * (widths.x + 2.0 * widths.y) / (3.0 * (widths.x + widths.y));
-    float along = (float(number % cuts.columns) + 0.5) / float(cuts.columns);
-    vec3 weights;
-    weights[cuts.apex] = height;
-    weights[(cuts.apex + 1u) % 3u] = (1.0 - height) * along;
-    weights[(cuts.apex + 2u) % 3u] = (1.0 - height) * (1.0 - along);
-    return vec3(weights.yz, (widths.x * widths.x - widths.y * widths.y) / float(cuts.columns));
+    vec2 place = place_in_facet(cuts, number, vec2(0.5, height * float(cuts.rows) - float(row)));
+    return vec3(place, (widths.x * widths.x - widths.y * widths.y) / float(cuts.columns));
 }
 
 #endif

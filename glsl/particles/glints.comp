@@ -118,7 +118,7 @@ void main() {
             return;
         }
         if (has_diffuse_lobe(next)) {
-            uint home = found_home(hit.triangle, hit.barycentric, dot(face, direction) > 0.0);
+            uint home = found_home(hit.triangle, hit.barycentric, face, met, direction, hit.distance);
             uvec3 steps = uvec3(min(flux * push.steps_a_watt, vec3(1e8)) + 0.5);
             if (home != NO_PARTICLE && steps != uvec3(0u)) {
                 uint first = 3u * (EVENT_LEVELS == 0u ? home : event * push.particle_count + home);

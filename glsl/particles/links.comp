@@ -125,7 +125,7 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
             float random = uniform_of(seed_of(seed, 9u));
             // Behind mirrors the link stands for what they let through; where that passes it by, for what this surface's specular lobe passes on, or for nothing.
             bool arrives = event == 0u || random < passed + max3(carried);
-            uint home = !arrives ? NO_PARTICLE : found_home(hit.triangle, hit.barycentric, dot(front, direction) > 0.0);
+            uint home = !arrives ? NO_PARTICLE : found_home(hit.triangle, hit.barycentric, front, met, direction, hit.distance);
             if (arrives && home == NO_PARTICLE) {
                 atomicAdd(lost[1], 1u);
                 return ends;

@@ -24,7 +24,7 @@ void main() {
     uint facet = invocation_of_list();
     bool wanted = false;
     if (facet < texelFetch(facets, int(push.triangle_count)).x) {
-        uint home = texelFetch(homes, int(facet)).x;
+        uint home = home_of_word(texelFetch(homes, int(facet)).x);
         wanted = home == LOST_FACET || (touched_bits(touched, home) & TOUCHED) != 0u;
     }
     uint place;

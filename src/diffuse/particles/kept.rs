@@ -24,6 +24,7 @@ pub(super) struct Kept {
     /// Names what they are made of, but for the surfaces.
     rest: u64,
     surfaces: u64,
+    shapes: u64,
     pub(super) sky_shines: bool,
     /// Of the sky's light.
     pub(super) sky_levels: Levels,
@@ -81,6 +82,7 @@ impl Kept {
                 sky_levels,
             )),
             surfaces: scene.surfaces_key(),
+            shapes: scene.shapes,
             sky_shines,
             sky_levels,
             second_ends,
@@ -102,20 +104,24 @@ impl Kept {
         self.key_on(self.surfaces)
     }
 
+    /// The key of how triangles are cut, which stands while they move.
+    pub(super) fn cut_key(&self) -> u64 {
+        hash_of(&("particles.facets", self.shapes, self.rest))
+    }
+
     fn key_on(&self, surfaces: u64) -> u64 {
         hash_of(&("particles", surfaces, self.rest))
     }
 
     /// Lets passes start from what memory holds, if it is all of what belongs to the surfaces of that key.
     pub(super) fn carry_on(&self, graph: &mut Graph<'_>, surfaces: u64) -> bool {
-        let &Kept { facets, homes, tallies, scatter_links, arrivals, lists, list_lengths, .. } = self;
-        let all = [facets, homes, tallies, scatter_links, arrivals, lists, list_lengths];
+        let &Kept { homes, tallies, scatter_links, arrivals, lists, list_lengths, .. } = self;
+        let all = [homes, tallies, scatter_links, arrivals, lists, list_lengths];
         let all: Vec<BufferRef<u32>> = all.into_iter().chain(self.chunks.iter().map(|chunk| chunk.links)).collect();
         let key = self.key_on(surfaces);
-        if !graph.finds(self.facet_size, key) || !all.iter().all(|buffer| graph.finds(*buffer, key)) {
+        if !all.iter().all(|buffer| graph.finds(*buffer, key)) {
             return false;
         }
-        graph.carry_on(self.facet_size, key);
         all.iter().for_each(|buffer| graph.carry_on(*buffer, key));
         true
     }

@@ -1,6 +1,6 @@
 //! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
 
-use super::formats::{FLOATS4, WORD, WORDS2};
+use super::formats::{FLOATS4, WORD};
 use super::geometry::ParticleSpace;
 use super::links::lobes_of;
 use super::options::{ParticleTransport, ParticlesOptions};
@@ -267,11 +267,12 @@ fn glints(
         scene_rays: space.rays.clone(),
         scene_lights: scene.lights(graph),
         light_targets: scene.targets(graph),
+        particles: space.group.clone(),
         lobes: lobes_of(scene),
         event_levels: levels.told_apart,
         glints: glints.read_write(),
-        facets: space.facets.texels(WORDS2),
-        homes: space.homes.texels(WORD),
+        facets: space.facets.read(),
+        homes: space.homes.read(),
         push: GlintsPush {
             photon_count,
             emitter_count: scene.emitter_count,

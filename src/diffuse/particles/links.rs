@@ -1,6 +1,6 @@
 //! Links: what particles see of each other.
 
-use super::formats::{FLOATS4, WORD, WORDS2, WORDS4};
+use super::formats::{FLOATS4, WORD, WORDS4};
 use super::kept::{Chunk, Kept};
 use super::moved::{AgainList, Moved};
 use super::options::ParticlesOptions;
@@ -57,8 +57,8 @@ pub(super) fn link(graph: &mut Graph<'_>, scene: &TracedScene, options: &Particl
             lost: lost.read_write(),
             head,
             again: list,
-            facets: kept.facets.texels(WORDS2),
-            homes: kept.homes.texels(WORD),
+            facets: kept.facets.read(),
+            homes: kept.homes.read(),
             push: LinksPush {
                 first,
                 count,

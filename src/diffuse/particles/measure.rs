@@ -17,8 +17,8 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
     let (particle_count, broad_lobes, triangle_count) = (*particle_count, *broad_lobes, placed.triangle_count);
     let (homes, tallies, key) = (kept.homes, kept.tallies, kept.key());
     let room = homes.count() as u32;
+    cut(graph, stage);
     if moved.is_none() {
-        cut(graph, stage);
         graph.fill_buffer("diffuse/particles/measure/clear", tallies, 0);
     }
     let again = moved.as_ref().map(|moved| touched_facets(graph, placed, kept.facets, (moved, homes)));
@@ -57,7 +57,7 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
 
 /// Cuts triangles into facets.
 fn cut(graph: &mut Graph<'_>, Stage { placed, kept, .. }: &Stage) {
-    let (triangle_count, key) = (placed.triangle_count, kept.key());
+    let (triangle_count, key) = (placed.triangle_count, kept.cut_key());
     let sizes = graph.buffer::<[f32; 4]>("particles.triangle_sizes", triangle_count as usize);
     let pass = FacetSizes {
         scene_rays: placed.rays.clone(),

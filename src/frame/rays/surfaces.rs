@@ -39,6 +39,8 @@ pub(crate) struct Surfaces {
     pub(crate) own_area: f64,
     /// How it came of what was before, if a part of the surfaces moved and nothing else happened.
     pub(crate) motion: Option<Motion>,
+    /// Names the triangles' shapes: the same while things move and nothing else changes.
+    pub(crate) shapes: u64,
     parts: Vec<Part>,
     /// By material.
     one_sided: Vec<bool>,
@@ -102,6 +104,7 @@ impl Surfaces {
             fine_size: fine_size(areas.iter().map(|&area| f64::from(area))),
             own_area: areas.iter().map(|&area| f64::from(area)).sum(),
             area: triangles.iter().filter(matters).map(TracedTriangle::area).sum(),
+            shapes: before.filter(|_| motion.is_some()).map_or(key, |before| before.shapes),
             motion,
             parts,
             one_sided: scene.materials().iter().map(|material| !material.double_sided).collect(),
