@@ -7,7 +7,6 @@
 #include "particles/home.glsl"
 #include "particles/lists.glsl"
 #include "particles/moved.glsl"
-#include "particles/places.glsl"
 
 // Lists the particles whose irradiance counts at points of one particle's catchment (the estimation lists of Chang et al. 3.2, at area particles): those
 // within reach, of similar normals, near the tangent plane, and seen by it where anything stands near. Always in the same order.
@@ -76,18 +75,17 @@ void main() {
         return;
     }
     float spacing = spacing_of_particles();
-    float own_spacing = spacing_of_particle(particle_places, particle);
     uvec4 place = texelFetch(particle_entries, int(entry));
     vec3 position = uintBitsToFloat(place.xyz);
     vec3 normal = unpack_direction(place.w);
     uint first = particle * LIST_CAPACITY;
     uint reach_steps = REACH_STEPS;
-    uint found = list_within(first, position, normal, LIST_SPACINGS * own_spacing, LIST_ACROSS * own_spacing);
+    uint found = list_within(first, position, normal, LIST_SPACINGS * spacing, LIST_ACROSS * spacing);
     [[dont_unroll]] for (uint attempt = 0u; attempt < SHORTENINGS && found > LIST_CAPACITY; ++attempt) {
         float share = SHORTER * sqrt(float(LIST_CAPACITY) / float(found));
         reach_steps = max(uint(float(reach_steps) * share), 1u);
-        float reach = LIST_SPACINGS * own_spacing * float(reach_steps) / float(REACH_STEPS);
-        found = list_within(first, position, normal, reach, LIST_ACROSS * own_spacing);
+        float reach = LIST_SPACINGS * spacing * float(reach_steps) / float(REACH_STEPS);
+        found = list_within(first, position, normal, reach, LIST_ACROSS * spacing);
     }
     uint listed = min(found, LIST_CAPACITY);
     vec3 from = above_entry(place, spacing);

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer cells;
+layout(set = 0, binding = 0) uniform samplerBuffer sums;
 layout(set = 0, binding = 1) uniform samplerBuffer spacing;
 layout(set = 0, binding = 2) writeonly buffer Places { uvec4 places[]; };
 layout(set = 0, binding = 3) writeonly buffer Buckets { uint buckets[]; };
@@ -16,7 +16,7 @@ layout(set = 0, binding = 4) buffer Counts { uint counts[]; };
 layout(set = 0, binding = 5) uniform usamplerBuffer backs;
 
 layout(push_constant, scalar) uniform Push {
-    uint cell_count;
+    uint triangle_count;
     uint particle_count;
     uint bucket_count;
 } push;
@@ -26,12 +26,10 @@ void main() {
     if (particle >= push.particle_count) {
         return;
     }
-    SurfacePoint point = surface_point(cells, backs, push.cell_count, particle, push.particle_count, 1u);
-    float widest = texelFetch(spacing, 0).x;
-    uint bucket = bucket_of(cell_of(point.position, widest), push.bucket_count);
-    float own = widest * sqrt(float(point.inverse_weight) / float(INVERSE_WEIGHT_STEPS));
+    SurfacePoint point = surface_point(sums, backs, push.triangle_count, particle, push.particle_count, 1u);
+    uint bucket = bucket_of(cell_of(point.position, texelFetch(spacing, 0).x), push.bucket_count);
     places[particle] = uvec4(floatBitsToUint(point.position), pack_direction(point.normal));
-    places[push.particle_count + particle] = uvec4(pack_direction(point.face), point.index, floatBitsToUint(own), 0u);
+    places[push.particle_count + particle] = uvec4(pack_direction(point.face), point.index, 0u, 0u);
     buckets[particle] = bucket;
     atomicAdd(counts[bucket], 1u);
 }

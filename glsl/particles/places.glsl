@@ -1,5 +1,5 @@
 // Where a particle is, by its number: a texel with position and packed shading normal, and behind those of all particles another one with the packed normal of
-// its triangle, on the particle's side, the triangle, and the spacing of particles there, m.
+// its triangle, on the particle's side, and the triangle.
 #ifndef PARTICLES_PLACES
 #define PARTICLES_PLACES
 
@@ -8,10 +8,6 @@
 // Texel of the second kind.
 int second_place(usamplerBuffer places, uint particle) {
     return textureSize(places) / 2 + int(particle);
-}
-
-float spacing_of_particle(usamplerBuffer places, uint particle) {
-    return uintBitsToFloat(texelFetch(places, second_place(places, particle)).z);
 }
 
 vec3 face_of_particle(usamplerBuffer places, uint particle) {

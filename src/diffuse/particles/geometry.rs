@@ -7,7 +7,7 @@ use super::links::link;
 use super::lists::list;
 use super::measure::measure;
 use super::moved::Moved;
-use super::options::{ParticleDensity, ParticlesOptions};
+use super::options::ParticlesOptions;
 use super::place::Placed;
 use super::stage::Stage;
 use crate::frame::rays::TracedScene;
@@ -54,12 +54,10 @@ impl ParticleSpace {
     /// Declares the stage.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
         let particle_count = count_of(scene, options);
-        // Where particles lie would depend on where things are.
-        let adaptive = options.density == ParticleDensity::Adaptive && !scene.facts.animated;
-        let placed = Placed::declare(graph, scene, particle_count, adaptive);
+        let placed = Placed::declare(graph, scene, particle_count);
         let levels = Levels::new(scene, options);
         let kept = Kept::declare(graph, scene, options, (particle_count, levels));
-        let moved = scene.motion.as_ref().filter(|motion| !adaptive && kept.carry_on(graph, motion.from));
+        let moved = scene.motion.as_ref().filter(|motion| kept.carry_on(graph, motion.from));
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);
         graph.fill_buffer("diffuse/particles/place/clear-lost", lost, 0);

@@ -55,7 +55,7 @@ impl Kept {
         options: &ParticlesOptions,
         (particle_count, levels): (u32, Levels),
     ) -> Kept {
-        let &ParticlesOptions { scatter, gather, emitter_samples, density, .. } = options;
+        let &ParticlesOptions { scatter, gather, emitter_samples, .. } = options;
         let count = particle_count as usize;
         let chunks = (0..).zip((0..particle_count).step_by(CHUNK as usize)).map(|(number, first)| {
             let count = CHUNK.min(particle_count - first);
@@ -77,7 +77,6 @@ impl Kept {
                 gather,
                 emitter_samples,
                 sky_shines,
-                density,
                 scene.backs(),
                 sky_levels,
             )),

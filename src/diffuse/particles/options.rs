@@ -28,16 +28,6 @@ choices! {
 }
 
 choices! {
-    /// How densely particles lie.
-    ParticleDensity {
-        /// The denser the nearer other surfaces are.
-        Adaptive = "adaptive",
-        /// Equally everywhere.
-        Even = "even",
-    }
-}
-
-choices! {
     /// How light goes from particle to particle before the last gathering.
     ParticleTransport {
         /// Scattered forwards, one link a particle from the second step on: the paper.
@@ -52,8 +42,6 @@ options! {
     ParticlesOptions, "particles":
     /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
     count: u32 = 0, draft = 20_000; OptionKind::Integer(0, 600_000), "particles", "linear";
-    /// How densely particles lie. What moves keeps its links if they lie evenly, as they always do in scenes with an animation.
-    density: ParticleDensity = ParticleDensity::Even; OptionKind::Choice(ParticleDensity::NAMES), "", "";
     /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. Reflections and refractions count as steps. None: until less than a hundredth of the flux is left.
     bounces: Option<u32> = None; OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
     /// How light goes from particle to particle. Bounces mean the same light paths either way.

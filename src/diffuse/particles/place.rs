@@ -8,12 +8,8 @@ use crate::graph::{Dependence, Graph};
 use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::groups::{Particles, SceneRays};
 use crate::shaders::particles::{
-    AreaSums, AreaSumsPush, Areas, AreasPush, CellCounts, CellCountsPush, CellWeights, CellWeightsPush, Crowd,
-    CrowdPush, Fill, FillPush, Place, PlacePush, Sort, SortPush,
+    AreaSums, AreaSumsPush, Areas, AreasPush, Crowd, CrowdPush, Fill, FillPush, Place, PlacePush, Sort, SortPush,
 };
-
-/// Evenly spread particles of a cell that triangles are cut into, as in glsl/particles/cell_counts.comp.
-const CELL_PARTICLES: u32 = 16;
 
 /// Particles at their places.
 pub(super) struct Placed {
@@ -28,8 +24,8 @@ pub(super) struct Placed {
 }
 
 impl Placed {
-    /// Declares so many; `adaptive`: the denser the nearer other surfaces are.
-    pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, particle_count: u32, adaptive: bool) -> Placed {
+    /// Declares so many.
+    pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, particle_count: u32) -> Placed {
         let rays = scene.rays(graph);
         let triangle_count = scene.triangle_count;
         let threads = [particle_count, 1, 1];
@@ -47,17 +43,13 @@ impl Placed {
         };
         graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
 
-        let weighted = adaptive.then(|| weigh(graph, scene, &rays, (areas, particle_count), backs));
-        let cell_count = weighted.map_or(triangle_count, |weighted| weighted.count() as u32);
-        let cells = graph.buffer::<[u32; 4]>("particles.cells", cell_count as usize + 1);
+        let sums = graph.buffer::<f32>("particles.area_sums", triangle_count as usize + 1);
         let spacing = graph.buffer::<f32>("particles.spacing", 1);
         let pass = AreaSums {
-            adaptive: u32::from(adaptive),
             areas: areas.texels(FLOAT),
-            weighted: weighted.map_or_else(TexelBuffer::absent, |weighted| weighted.texels(WORDS4)),
-            cells: cells.write(),
+            sums: sums.write(),
             spacing: spacing.write(),
-            push: AreaSumsPush { cell_count, particle_count },
+            push: AreaSumsPush { triangle_count, particle_count },
         };
         graph.pass("diffuse/particles/place/sums", pass).groups([1, 1, 1]);
 
@@ -68,14 +60,14 @@ impl Placed {
         let buckets = graph.buffer::<u32>("particles.buckets", particle_count as usize);
         let pass = Place {
             scene_rays: rays.clone(),
-            cells: cells.texels(WORDS4),
+            sums: sums.texels(FLOAT),
             spacing: spacing.texels(FLOAT),
             places: places.write(),
             buckets: buckets.write(),
             counts: counts.read_write(),
             has_backs: u32::from(backs.is_some()),
             backs: backs_of(backs),
-            push: PlacePush { cell_count, particle_count, bucket_count },
+            push: PlacePush { triangle_count, particle_count, bucket_count },
         };
         let pass = graph.pass("diffuse/particles/place/points", pass);
         pass.note("particles", u64::from(particle_count)).threads(threads);
@@ -125,40 +117,6 @@ impl Placed {
         };
         Placed { rays, triangle_count, areas, spacing, backs, group }
     }
-}
-
-/// Cuts triangles into cells, each with its weight; behind the last one there may be some without area.
-fn weigh(
-    graph: &mut Graph<'_>,
-    scene: &TracedScene,
-    rays: &SceneRays,
-    (areas, particle_count): (BufferRef<f32>, u32),
-    backs: Option<BufferRef<u32>>,
-) -> BufferRef<[u32; 4]> {
-    let triangle_count = scene.triangle_count;
-    let particles_an_area = f64::from(particle_count) / scene.own_area.max(1e-300);
-    let counts = graph.buffer::<u32>("particles.cell_counts", triangle_count as usize);
-    let push = CellCountsPush { triangle_count, particles_an_area: particles_an_area as f32 };
-    let pass = CellCounts { areas: areas.texels(FLOAT), counts: counts.write(), push };
-    graph.pass("diffuse/particles/place/cells", pass).threads([triangle_count, 1, 1]);
-    let starts = graph.buffer::<u32>("particles.cell_starts", triangle_count as usize + 1);
-    let push = StartsPush { bucket_count: triangle_count };
-    let pass = Starts { counts: counts.texels(WORD), starts: starts.write(), push };
-    graph.pass("diffuse/particles/place/cell-starts", pass).groups([1, 1, 1]);
-    // n² < 4x for n = ⌈√x⌉ and x > 1; two-sided surfaces have twice their area.
-    let cell_room = triangle_count + 8 * particle_count / CELL_PARTICLES;
-    let weighted = graph.buffer::<[u32; 4]>("particles.weighted_cells", cell_room as usize);
-    let pass = CellWeights {
-        scene_rays: rays.clone(),
-        areas: areas.texels(FLOAT),
-        starts: starts.texels(WORD),
-        has_backs: u32::from(backs.is_some()),
-        backs: backs_of(backs),
-        cells: weighted.write(),
-        push: CellWeightsPush { triangle_count, cell_room, spacing: particles_an_area.sqrt().recip() as f32 },
-    };
-    graph.pass("diffuse/particles/place/weights", pass).threads([cell_room, 1, 1]);
-    weighted
 }
 
 /// As passes bind them.

@@ -8,14 +8,14 @@ mod moving;
 mod receivers;
 mod transport;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::geometry::ParticleSpace;
 use super::lighting::{self, Lighting};
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::gpu_tests::against_paths::{leaks, passes_run};
-use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, request, view};
+use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::graph::Graph;
 use crate::method::{Options, Preset};
@@ -38,6 +38,8 @@ pub(super) struct Stages {
     pub(super) emitted: Vec<[f32; 4]>,
     /// Received in each step, W.
     received: Vec<[f64; 3]>,
+    /// That each particle sends out, W/(m² sr).
+    pub(super) radiance: Vec<[f32; 4]>,
     passes: Vec<PassTiming>,
 }
 
@@ -48,18 +50,18 @@ fn stages(session: &Session, scene: &Scene, options: &ParticlesOptions) -> Stage
     let space = ParticleSpace::declare(&mut graph, &traced, options);
     let Lighting { emitted, scale, received, radiance } =
         lighting::light(&mut graph, &traced, &space, options, options.bounces.unwrap_or(1));
-    graph.want_buffer(radiance);
-    let reads = [graph.read_back_buffer(space.matter), graph.read_back_buffer(emitted), graph.read_back_buffer(scale)];
+    let reads = [space.matter, emitted, scale, radiance].map(|buffer| graph.read_back_buffer(buffer));
     let steps: Vec<_> = received.iter().map(|step| graph.read_back_buffer(*step)).collect();
     let mut executed = graph.run(Timing::Passes).expect("a frame");
-    let [matter, emitted, scale] = reads.map(|read| bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&executed.take(read)));
+    let [matter, emitted, scale, radiance] =
+        reads.map(|read| bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&executed.take(read)));
     let per_step = f64::from(scale[0][0]);
     let received = steps.into_iter().map(|read| {
         let words = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(&executed.take(read));
         [0, 1, 2].map(|channel| words.iter().map(|word| f64::from(word[channel])).sum::<f64>() / per_step)
     });
     let received = received.collect();
-    Stages { matter, emitted, received, passes: executed.passes }
+    Stages { matter, emitted, received, radiance, passes: executed.passes }
 }
 
 fn count(passes: &[PassTiming], pass: &str, name: &str) -> u64 {
@@ -101,11 +103,31 @@ fn particles_stand_for_all_of_the_surface() {
     assert!((area / 54.0 - 1.0).abs() < 1e-4, "{area} m² of 54");
     assert_eq!(count(&made.passes, "diffuse/particles/measure/catch", "lost"), 0);
     assert_eq!(count(&made.passes, "diffuse/particles/link/trace.0", "lost"), 0);
+    // Rows along the longest edge, of a third of the spacing.
+    let size = (54.0_f64 / 3000.0).sqrt() / 3.0;
+    let [columns, rows] = [3.0 * 2.0_f64.sqrt(), 3.0 / 2.0_f64.sqrt()].map(|length| (length / size).ceil() as u64);
+    assert_eq!(count(&made.passes, "diffuse/particles/measure/catch", "facets"), 12 * columns * rows);
     // The specular layer of the material takes its share.
     let ratio = f64::from(made.matter[7][1]) / f64::from(made.matter[7][0]);
     assert!((ratio - 2.0).abs() < 1e-2, "{:?}", made.matter[7]);
     let spread = spread_of_areas(&made.matter);
     assert!(spread < 0.22, "areas vary by {spread}");
+}
+
+/// A strip of 2.8 m by 1 cm in a room: it takes as many facets as it is long, not as many as squares of its length.
+#[test]
+fn slender_triangles_are_cut_along_their_length_alone() {
+    let session = Session::open();
+    let mut scene = closed_box(1.5, lambert([0.5; 3]));
+    let strip = scene.add_material(lambert([0.5; 3])).expect("a sound material");
+    let corners = [[-1.4, 0.0, 1.0], [-1.4, 0.0, 1.01], [1.4, 0.0, 1.01], [1.4, 0.0, 1.0]];
+    let before = stages(&session, &scene, &options(3000, 1));
+    place(&mut scene, vec![quad(corners, strip)], DAffine3::IDENTITY);
+    let after = stages(&session, &scene, &options(3000, 1));
+    let [before, after] = [before, after].map(|made| count(&made.passes, "diffuse/particles/measure/catch", "facets"));
+    let columns = (2.8_f64 / ((54.0_f64 / 3000.0).sqrt() / 3.0)).ceil() as u64;
+    // Two triangles, on both sides: the strip is seen from behind.
+    assert_eq!(after - before, 2 * 2 * columns);
 }
 
 #[test]

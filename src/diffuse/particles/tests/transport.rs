@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::super::options::{ParticleTransport, ParticlesOptions};
-use super::{options, settings};
+use super::{options, settings, stages};
 use crate::gpu_tests::scenes::{add_light, box_faces, closed_box, lambert, place, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::{Preset, Settings, Slot, Technique};
@@ -52,6 +52,21 @@ fn scattering_and_gathering_bring_the_same_light() {
             assert!(ratio.iter().all(|&ratio| within(ratio, 0.015)), "{name}, {bounces} steps: {ratio:?}");
         }
     }
+}
+
+/// A particle gets few links of others, but what it sends out is hardly noisier than if it had gathered through all of its own.
+#[test]
+fn no_particle_stands_out_for_the_few_links_that_end_on_it() {
+    let session = Session::open();
+    let scene = with_lamp(closed_box(1.0, lambert([0.7; 3])));
+    let options = ParticlesOptions { gather: 16, ..options(8000, 4) };
+    let gathered = ParticlesOptions { transport: ParticleTransport::GatherOnly, ..options.clone() };
+    let [scattered, gathered] = [options, gathered].map(|options| stages(&session, &scene, &options).radiance);
+    let pairs = || scattered.iter().zip(&gathered).map(|(a, b)| (f64::from(a[1]), f64::from(b[1])));
+    let mean = pairs().map(|(_, b)| b).sum::<f64>() / gathered.len() as f64;
+    let error = (pairs().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / gathered.len() as f64).sqrt() / mean;
+    println!("radiances differ by {error:.4}");
+    assert!(error < 0.15, "{error}");
 }
 
 /// What a mirror of a colour sends on between particles has its colour.
