@@ -20,8 +20,11 @@ struct RegionPoint {
     vec3 geometric_normal;
 };
 
+// Regions that one group takes, as in src/diffuse/particles/receivers.rs. gl_WorkGroupSize is 1 where a header comes before its declaration.
+const uint REGIONS_PER_GROUP = 64u;
+
 uint region_of_invocation() {
-    return gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+    return gl_GlobalInvocationID.y * gl_NumWorkGroups.x * REGIONS_PER_GROUP + gl_GlobalInvocationID.x;
 }
 
 RegionPoint region_point(uint index, ivec2 size, int level_count) {
