@@ -21,7 +21,7 @@
 //   ΔA_i = Σ_{f : home(f) = i} A_f,   ρ_i = mean of ρ(x_f) over these, weighted by area
 //
 // and likewise of what broad specular lobes reflect, where there are any. Areas are whole steps, rounded up or down at random, so that the smallest count as well.
-// Where something moved, the facets that this may concern (touched_points.comp) are taken off the particles that stood for them, and counted again.
+// Where something moved, the facets that this may concern (touched_facets.comp) are taken off the particles that stood for them, and counted again.
 
 layout(local_size_x = 64) in;
 
@@ -109,7 +109,7 @@ void main() {
     Hit above = closest_hit(start, normal, 2.0 * LIFT * spacing);
     float free = above.triangle == NO_TRIANGLE ? 3e38 : above.distance;
     uint home = home_of(position, normal, lifted(start, normal, normal, free, spacing));
-    uint before = home_of_word(homes[facet]);
+    uint before = push.again != 0u ? home_of_word(homes[facet]) : LOST_FACET;
     homes[facet] = home == NO_PARTICLE ? LOST_FACET : home | (is_parted(triangle, cuts, facet - record.x, face, spacing) ? PARTED_FACET : 0u);
     // Alpha leaves nothing there; links may end beside its middle.
     bool is_there = ALPHA_MASKS == 0u || material.alpha_cutoff < 0.0 || is_covered(triangle, material, middle.xy);
@@ -124,7 +124,7 @@ void main() {
     float area = texelFetch(areas, int(index)).x / float(cuts.sides) * middle.z;
     float random = float(seed_of(facet, 2u) >> 8) / 16777216.0;
     uint steps = uint(area / area_step(facet_size) + random);
-    if (push.again != 0u && before != LOST_FACET) {
+    if (before != LOST_FACET) {
         count_facet(before, albedo, broad, 0u - steps);
     }
     if (home == NO_PARTICLE) {

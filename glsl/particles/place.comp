@@ -26,7 +26,7 @@ void main() {
     if (particle >= push.particle_count) {
         return;
     }
-    SurfacePoint point = surface_point(sums, backs, push.triangle_count, particle, push.particle_count, 1u);
+    SurfacePoint point = surface_point(sums, backs, push.triangle_count, particle, push.particle_count);
     uint bucket = bucket_of(cell_of(point.position, texelFetch(spacing, 0).x), push.bucket_count);
     places[particle] = uvec4(floatBitsToUint(point.position), pack_direction(point.normal));
     places[push.particle_count + particle] = uvec4(pack_direction(point.face), point.index, 0u, 0u);

@@ -24,7 +24,7 @@ vec2 place_by_halves(vec2 square) {
 }
 
 // `sums`: the areas before each of `triangle_count` triangles, the total behind.
-SurfacePoint surface_point(samplerBuffer sums, usamplerBuffer backs, uint triangle_count, uint number, uint count, uint seed) {
+SurfacePoint surface_point(samplerBuffer sums, usamplerBuffer backs, uint triangle_count, uint number, uint count) {
     float total = texelFetch(sums, int(triangle_count)).x;
     float step_area = total / float(count);
     float area = (float(number) + 0.5) * step_area;
@@ -51,7 +51,7 @@ SurfacePoint surface_point(samplerBuffer sums, usamplerBuffer backs, uint triang
     // Numbers are counted from the first one of the side: areas are not exact enough for millions of points.
     float before = first + (back ? side_area : 0.0);
     uint k = number - uint(max(ceil(before / step_area - 0.5), 0.0));
-    uint shift = seed_of(low * 2u + (back ? 1u : 0u), seed);
+    uint shift = seed_of(low * 2u + (back ? 1u : 0u), 1u);
     // In 32 bits: as a float the sequence would lose its spacing after some ten thousand points.
     uvec2 bits = uvec2(shift << 16, shift & 0xFFFF0000u) + k * uvec2(3242174889u, 2447445414u);
     point.place = place_by_halves(vec2(bits >> 8) / 16777216.0);

@@ -26,8 +26,6 @@ import gltf_to_mitsuba
 import mitsuba as mi
 
 SCENES = ["cornell-point", "corridor"]
-# Samples of all pixels that are in flight at once.
-SAMPLES_A_PASS = 4e6
 # What is made of the geometry alone.
 GEOMETRY = ("diffuse/particles/place/", "diffuse/particles/measure/", "diffuse/particles/link/", "diffuse/particles/lists/")
 # Techniques and settings: the counts of particles and the sides of their squares of links, and `hybrid` in two presets.
@@ -38,19 +36,6 @@ OURS += [("hybrid", preset, {}) for preset in ("default", "high")]
 def integrator():
     path = {"type": "path", "max_depth": -1, "rr_depth": 8}
     return mi.load_dict({"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "image": path})
-
-
-def rendered(loaded, tracer, spp, seed):
-    """Image, albedo and normals: (height, width, 9)."""
-    width, height = loaded.scene.sensors()[0].film().crop_size()
-    chunk = max(1, int(SAMPLES_A_PASS // (width * height)))
-    total, done = 0.0, 0
-    while done < spp:
-        count = min(chunk, spp - done)
-        part = mi.render(loaded.scene, integrator=tracer, spp=count, seed=seed * 100003 + done)
-        total = total + count * np.array(part, dtype=np.float32)
-        done += count
-    return total / spp
 
 
 def denoised(layers):
@@ -106,13 +91,13 @@ def row(name, frame_ms, further_ms, found):
 def by_mitsuba(options, path, reference):
     loaded = gltf_to_mitsuba.load(path, options.size, own_diffuse=True)
     tracer = integrator()
-    many = rendered(loaded, tracer, options.check, 77)[..., :3]
+    many = gltf_to_mitsuba.passes(loaded, tracer, options.check, 77)[..., :3]
     ratio = many.mean() / reference.mean()
     if abs(ratio - 1) > compare.MEAN_TOLERANCE:
         sys.exit(f"{path}: the mean of Mitsuba's image over irradia's is {ratio:.4f}: not the same light, nothing to compare")
     yield row(f"Mitsuba, {options.check} spp, not denoised", None, None, errors(many, reference))
     for spp in options.spp:
-        layers, render_ms = timed(options.rounds, lambda seed: rendered(loaded, tracer, spp, seed))
+        layers, render_ms = timed(options.rounds, lambda seed: gltf_to_mitsuba.passes(loaded, tracer, spp, seed))
         image, denoise_ms = timed(options.rounds, lambda _: denoised(layers))
         yield row(f"Mitsuba, {spp} spp, not denoised", render_ms, None, errors(layers[..., :3], reference))
         whole = None if render_ms is None else render_ms + denoise_ms

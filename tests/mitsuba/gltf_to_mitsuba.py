@@ -231,6 +231,23 @@ class FirstHit(mi.SamplingIntegrator):
 mi.register_integrator("first_hit", FirstHit)
 
 
+# Samples of all pixels that are in flight at once: a wavefront holds every sample of a pass.
+SAMPLES_A_PASS = 4e6
+
+
+def passes(loaded, integrator, spp, seed=0):
+    """Mean of so many samples of every layer, (height, width, layers) float64."""
+    width, height = loaded.scene.sensors()[0].film().crop_size()
+    chunk = max(1, int(SAMPLES_A_PASS // (width * height)))
+    total, done = 0.0, 0
+    while done < spp:
+        count = min(chunk, spp - done)
+        image = mi.render(loaded.scene, integrator=integrator, spp=count, seed=seed * 100003 + done)
+        total = total + count * np.array(image, dtype=np.float64)
+        done += count
+    return total / spp
+
+
 def render(loaded, spp, seed=0, bounces=None, integrator="auto"):
     """Linear RGB, (height, width, 3) float64.
 
@@ -242,25 +259,13 @@ def render(loaded, spp, seed=0, bounces=None, integrator="auto"):
         integrator = "light" if loaded.has_deltas and loaded.mirrors else "path"
     path = {"type": "path", "max_depth": depth, "rr_depth": 8}
 
-    def passes(integrator, spp, samples_a_pass):
-        # A wavefront holds every sample of a pass at once.
-        width, height = loaded.scene.sensors()[0].film().crop_size()
-        chunk = max(1, int(samples_a_pass // (width * height)))
-        total, done = 0.0, 0
-        while done < spp:
-            count = min(chunk, spp - done)
-            image = mi.render(loaded.scene, integrator=integrator, spp=count, seed=seed * 100003 + done)
-            total = total + count * np.array(image, dtype=np.float64)
-            done += count
-        return total / spp
-
     if integrator == "path":
-        return passes(mi.load_dict(path), spp, 4e6)
+        return passes(loaded, mi.load_dict(path), spp, seed)
     FirstHit.shapes = loaded.mirrors
-    seen = passes(mi.load_dict({"type": "first_hit", "depth": depth}), spp, 4e6)
+    seen = passes(loaded, mi.load_dict({"type": "first_hit", "depth": depth}), spp, seed)
     irradia_bsdf.IrradiaBsdf.mirrors_hide_from_camera = True
     try:
-        traced = passes(mi.load_dict({"type": "ptracer", "max_depth": depth, "rr_depth": 8}), spp, 4e6)
+        traced = passes(loaded, mi.load_dict({"type": "ptracer", "max_depth": depth, "rr_depth": 8}), spp, seed)
     finally:
         irradia_bsdf.IrradiaBsdf.mirrors_hide_from_camera = False
     return seen + traced
