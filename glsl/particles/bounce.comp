@@ -128,7 +128,7 @@ void main() {
     vec3 gathered = vec3(0.0);
     [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
         uint link = own * push.link_count + i;
-        gathered += radiance_at_end(link);
+        gathered += radiance_at_end(texelFetch(links, int(link)).x);
         if (BROAD_LOBES != 0u) {
             gathered += broad_radiance(texelFetch(links, int(link)).x);
         }

@@ -17,16 +17,22 @@
 //   E(n') ≈ E (1 + c)/2 + T·n'        T = ∫ L ω dω without its part along n ≈ π/N Σ_k L ω_k/cosθ_k
 //
 // which is exact for even light at any c, and for any light to the first order. T·luminance/E's is what is kept.
+//
+// Where receivers look for themselves at what is near (near.comp), the same of the links that end farther away, as if all did:
+//
+//   A ≈ π/F Σ_{k far} L(end of link k)        F: how many are far
 
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint TURNS = 0u;  // 1: T is wanted
+layout(constant_id = 1) const uint NEAR = 0u;   // 1: A is wanted
 
 layout(set = 0, binding = 0) uniform usamplerBuffer used;
 layout(set = 0, binding = 1) uniform usamplerBuffer links;
 layout(set = 0, binding = 2) uniform samplerBuffer radiance;
 layout(set = 0, binding = 3) uniform samplerBuffer matter;
 layout(set = 0, binding = 4) buffer Irradiance { vec4 irradiance[]; };  // and the area of each, m²; behind all of them T/E
+layout(set = 0, binding = 5) buffer Far { vec4 far[]; };  // A, and the area times F over all links; behind all of them T/E of these
 
 layout(push_constant, scalar) uniform Push {
     uint first;       // particle of the chunk
@@ -38,6 +44,27 @@ layout(push_constant, scalar) uniform Push {
 
 #include "particles/gathered.glsl"
 
+// What links bring: radiance, with luminance along the surface, and their number.
+struct Found {
+    vec3 sum;
+    vec2 turn;
+    uint count;
+};
+
+void add_link(inout Found found, vec3 radiance, vec2 turn) {
+    found.sum += radiance;
+    found.turn += turn;
+    found.count += 1u;
+}
+
+vec3 mean_irradiance(Found found) {
+    return found.sum * (PI / float(max(found.count, 1u)));
+}
+
+vec4 tangential(Found found, Frame frame) {
+    return vec4(to_world(frame, vec3(found.turn, 0.0)) / max(luminance(found.sum), 1e-30), 0.0);
+}
+
 void main() {
     uint own = gl_GlobalInvocationID.x;
     if (own >= push.count || texelFetch(used, int(push.first + own)).x == 0u) {
@@ -47,21 +74,32 @@ void main() {
     uint taken = link_count / push.parts;
     uint particle = push.first + own;
     uint begin = particle % push.parts * taken;
-    vec3 sum = vec3(0.0);
-    vec2 turn = vec2(0.0);
+    Found all = Found(vec3(0.0), vec2(0.0), 0u);
+    Found beyond = all;
     [[dont_unroll]] for (uint i = 0u; i < taken; ++i) {
-        vec3 found = radiance_at_end(own * link_count + begin + i);
-        sum += found;
+        uint end = texelFetch(links, int(own * link_count + begin + i)).x;
+        vec3 found = radiance_at_end(end);
+        vec2 turn = vec2(0.0);
         if (TURNS != 0u) {
             vec2 stratum = vec2(stratum_of_link(begin + i, push.gather_side)) + 0.5;
             vec3 direction = cosine_direction(stratum / float(push.gather_side));
-            turn += luminance(found) * direction.xy / direction.z;
+            turn = luminance(found) * direction.xy / direction.z;
+        }
+        add_link(all, found, turn);
+        if (NEAR != 0u && (!ends_on_particle(end) || (end & NEAR_LINK) == 0u)) {
+            add_link(beyond, found, turn);
         }
     }
-    irradiance[particle] = vec4(sum * (PI / float(taken)), texelFetch(matter, int(particle)).w);
+    float area = texelFetch(matter, int(particle)).w;
+    irradiance[particle] = vec4(mean_irradiance(all), area);
+    if (NEAR != 0u) {
+        far[particle] = vec4(mean_irradiance(beyond), area * (float(beyond.count) / float(taken)));
+    }
     if (TURNS != 0u) {
-        vec3 normal = unpack_direction(texelFetch(particle_places, int(particle)).w);
-        vec3 tangential = to_world(frame_around(normal), vec3(turn, 0.0));
-        irradiance[push.particle_count + particle] = vec4(tangential / max(luminance(sum), 1e-30), 0.0);
+        Frame frame = frame_around(unpack_direction(texelFetch(particle_places, int(particle)).w));
+        irradiance[push.particle_count + particle] = tangential(all, frame);
+        if (NEAR != 0u) {
+            far[push.particle_count + particle] = tangential(beyond, frame);
+        }
     }
 }

@@ -4,9 +4,8 @@
 
 #include "particles/link.glsl"
 
-// W/(m²·sr), of one link of the buffer.
-vec3 radiance_at_end(uint link) {
-    uint end = texelFetch(links, int(link)).x;
+// W/(m²·sr), of one link.
+vec3 radiance_at_end(uint end) {
     return ends_on_particle(end) ? texelFetch(radiance, int(particle_of_link(end))).rgb : vec3(0.0);
 }
 

@@ -10,6 +10,10 @@ const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
 // Set where the link also brings light (arrivals.glsl).
 const uint BRINGS_LIGHT = 0x80000000u;
 
+// Set of a link for gathering whose end is nearer than this, spacings of particles.
+const uint NEAR_LINK = 0x40000000u;
+const float NEAR_SPACINGS = 2.0;
+
 // Of a link for scattering the channels that were lost on its way, and how many specular events it met: none, or up to 8 off mirrors, coats and through glass.
 const uint WITHOUT_RED = 0x20000000u;
 const uint WITHOUT_GREEN = 0x10000000u;

@@ -136,7 +136,9 @@ Ends trace_link(uint particle, vec3 position, vec3 normal, vec3 face, vec3 direc
             } else {
                 ends.second = end;
             }
-            ends.gathered = event == 0u ? bringing_light(home, brings) : ends.gathered;
+            if (event == 0u) {
+                ends.gathered = bringing_light(home, brings) | (hit.distance < NEAR_SPACINGS * particle_spacing ? NEAR_LINK : 0u);
+            }
             if (event > 0u) {
                 passed += max3(carried);
                 if (arrives || passed >= 1.0) {

@@ -38,12 +38,12 @@ choices! {
 }
 
 options! {
-    /// Options of the `particles` diffuse method (Chang, Park & Ihm).
+    /// Options of the `particles` diffuse method (Chang, Park & Ihm). Preset `paper`: its section 5, with the count of three of its six scenes, the bounces of two.
     ParticlesOptions, "particles":
     /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
-    count: u32 = 0, draft = 20_000; OptionKind::Integer(0, 600_000), "particles", "linear";
+    count: u32 = 0, draft = 20_000, paper = 150_000; OptionKind::Integer(0, 600_000), "particles", "linear";
     /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. Reflections and refractions count as steps. None: until less than a hundredth of the flux is left.
-    bounces: Option<u32> = None; OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
+    bounces: Option<u32> = None, paper = Some(8); OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
     /// How light goes from particle to particle. Bounces mean the same light paths either way.
     transport: ParticleTransport = ParticleTransport::TwoWay; OptionKind::Choice(ParticleTransport::NAMES), "", "";
     /// Links a side of the square of directions that the first scattering step takes.
@@ -53,11 +53,13 @@ options! {
     /// Parts of the links that particles are gathered by: 4: each takes a quarter, its neighbours the others.
     interleave: u32 = 1; OptionKind::OneOf(&[1, 4]), "parts", "falls";
     /// Where the picture reads the particles' irradiance.
-    receivers: ParticlesReceivers = ParticlesReceivers::Regions; OptionKind::Choice(ParticlesReceivers::NAMES), "", "";
+    receivers: ParticlesReceivers = ParticlesReceivers::Regions, paper = ParticlesReceivers::Mesh; OptionKind::Choice(ParticlesReceivers::NAMES), "", "";
     /// With `receivers=mesh` how far radiance particles are apart at most; 0: as area particles on average.
     spacing: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
     /// With `receivers=mesh` which radiance particles have estimation lists.
-    lists: ParticleLists = ParticleLists::Used; OptionKind::Choice(ParticleLists::NAMES), "", "";
+    lists: ParticleLists = ParticleLists::Used, paper = ParticleLists::All; OptionKind::Choice(ParticleLists::NAMES), "", "";
+    /// With `receivers=regions` rays a side of the square of directions in which each region that has something near looks for itself at what is nearer than two spacings of particles; 0: none.
+    near: u32 = 0; OptionKind::OneOf(&[0, 2, 4, 8, 16]), "rays", "quadratic";
     /// Photons from lights to mirrors and glass, and on to the first diffuse surface.
     photons: u32 = 200_000, draft = 40_000, high = 1_000_000; OptionKind::Integer(0, 8_000_000), "photons", "linear";
     /// Points of emissive surfaces that each particle sends a ray to.

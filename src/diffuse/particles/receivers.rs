@@ -10,7 +10,8 @@ use crate::frame::regions::{self, Pyramid, RegionRule, flattened_size, signed};
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::particles::{
-    Homes, HomesPush, RegionHomes, RegionHomesPush, RegionLight, RegionLightPush, Shade, ShadePush,
+    Homes, HomesPush, Near as LookNear, NearPush, RegionHomes, RegionHomesPush, RegionLight, RegionLightPush, Shade,
+    ShadePush,
 };
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -72,55 +73,92 @@ impl Receivers {
         Receivers::Regions(pyramid, homes)
     }
 
+    /// These can look for themselves at what is near.
+    pub(super) fn are_regions(&self) -> bool {
+        matches!(self, Receivers::Regions(..))
+    }
+
     /// The slot, once particles have gathered.
     pub(super) fn light(
         &self,
         graph: &mut Graph<'_>,
-        surface: &GBuffer,
+        (surface, shift): (&GBuffer, [f32; 3]),
         space: &ParticleSpace,
-        shift: [f32; 3],
         irradiance: BufferRef<[f32; 4]>,
+        near: Option<Near>,
     ) -> ImageRef {
         let diffuse = graph.image("particles.diffuse", FLOATS, surface.size);
-        let (list_lengths, lists) = (space.list_lengths.texels(WORD), space.lists.texels(WORD));
-        match self {
+        let (pyramid, homes) = match self {
+            Receivers::Regions(pyramid, homes) => (pyramid, homes),
             Receivers::Pixels(homes) => {
                 let pass = Shade {
                     turns: space.turns,
                     particles: space.group.clone(),
                     surface: surface.group.clone(),
                     homes: homes.sampled(),
-                    list_lengths,
-                    lists,
+                    list_lengths: space.list_lengths.texels(WORD),
+                    lists: space.lists.texels(WORD),
                     irradiance: irradiance.texels(FLOATS4),
                     diffuse: diffuse.write(),
                     push: ShadePush { shift },
                 };
                 graph.pass("diffuse/particles/shade", pass).pixels(surface.size);
+                return diffuse;
             }
-            Receivers::Regions(pyramid, homes) => {
-                let received = graph.image("particles.regions_irradiance", FLOATS, flattened_size(surface.size));
-                graph.clear_image("diffuse/particles/shade/clear", received, ClearColor::Float([0.0; 4]));
-                if let Some(list) = pyramid.list {
-                    let level_count = pyramid.level_count.cast_signed();
-                    let pass = RegionLight {
-                        turns: space.turns,
-                        particles: space.group.clone(),
-                        surface: surface.group.clone(),
-                        regions: list.texels(WORD),
-                        planes: pyramid.planes.sampled(),
-                        homes: homes.texels(WORD),
-                        list_lengths,
-                        lists,
-                        irradiance: irradiance.texels(FLOATS4),
-                        regions_irradiance: received.read_write(),
-                        push: RegionLightPush { shift, size: signed(surface.size), level_count },
-                    };
-                    graph.pass("diffuse/particles/shade/regions", pass).threads_indirect(list, 0);
-                }
-                regions::interpolate(graph, surface, &RULE, pyramid, received, diffuse);
+        };
+        let received = graph.image("particles.regions_irradiance", FLOATS, flattened_size(surface.size));
+        graph.clear_image("diffuse/particles/shade/clear", received, ClearColor::Float([0.0; 4]));
+        if let Some(list) = pyramid.list {
+            let (size, level_count) = (signed(surface.size), pyramid.level_count.cast_signed());
+            let read = |graph: &mut Graph<'_>, name: &str, irradiance: BufferRef<[f32; 4]>, image: ImageRef| {
+                let pass = RegionLight {
+                    turns: space.turns,
+                    particles: space.group.clone(),
+                    surface: surface.group.clone(),
+                    regions: list.texels(WORD),
+                    planes: pyramid.planes.sampled(),
+                    homes: homes.texels(WORD),
+                    list_lengths: space.list_lengths.texels(WORD),
+                    lists: space.lists.texels(WORD),
+                    irradiance: irradiance.texels(FLOATS4),
+                    regions_irradiance: image.read_write(),
+                    push: RegionLightPush { shift, size, level_count },
+                };
+                graph.pass(name, pass).threads_indirect(list, 0);
+            };
+            read(graph, "diffuse/particles/shade/regions", irradiance, received);
+            if let Some(near) = near {
+                let far = graph.image("particles.regions_far", FLOATS, flattened_size(surface.size));
+                graph.clear_image("diffuse/particles/shade/clear-far", far, ClearColor::Float([0.0; 4]));
+                read(graph, "diffuse/particles/shade/far", near.far, far);
+                let pass = LookNear {
+                    particles: space.group.clone(),
+                    scene_rays: space.rays.clone(),
+                    surface: surface.group.clone(),
+                    regions: list.texels(WORD),
+                    planes: pyramid.planes.sampled(),
+                    radiance: near.radiance.texels(FLOATS4),
+                    far: far.read(),
+                    regions_irradiance: received.read_write(),
+                    facets: space.facets.read(),
+                    homes: space.homes.read(),
+                    push: NearPush { shift, size, level_count, side: near.side },
+                };
+                graph.pass("diffuse/particles/shade/near", pass).threads_indirect(list, 0);
             }
         }
+        regions::interpolate(graph, surface, &RULE, pyramid, received, diffuse);
         diffuse
     }
+}
+
+/// What receivers look at what is near with.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    /// Irradiance of particles by what is far.
+    pub(super) far: BufferRef<[f32; 4]>,
+    /// Of particles.
+    pub(super) radiance: BufferRef<[f32; 4]>,
+    /// Rays a side.
+    pub(super) side: u32,
 }

@@ -5,11 +5,11 @@ use super::geometry::ParticleSpace;
 use super::mesh::{self, MeshReceivers};
 use super::mirrored;
 use super::options::{ParticlesOptions, ParticlesReceivers};
-use super::receivers::Receivers;
+use super::receivers::{Near, Receivers};
 use crate::frame::mirrored::MirroredPoints;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
-use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::graph::bindings::{BufferRef, ImageRef, ReadWriteBuffer};
 use crate::method::FrameCx;
 use crate::shaders::particles::{Gather, GatherPush, Used, UsedPush};
 
@@ -32,11 +32,14 @@ pub(super) fn shade(
     graph.fill_buffer("diffuse/particles/find/clear-used", used, 0);
     graph.fill_buffer("diffuse/particles/find/clear-counts", counts, 0);
     if options.receivers == ParticlesReceivers::Mesh {
+        if options.near > 0 {
+            graph.skip("diffuse/particles/shade/near", "radiance particles are read, not regions");
+        }
         let seen = (surface, shift, points.as_deref());
         let receivers = MeshReceivers::find(graph, scene, space, seen, options, marks);
         receivers.mark_used(graph, used, counts);
         mark_used(graph, space, marks, (used, counts));
-        let irradiance = gather(graph, space, options, used, radiance);
+        let Gathered { irradiance, .. } = gather(graph, space, (options, false), used, radiance);
         let (diffuse, mirrored) = mesh::light(graph, space, &receivers, seen, irradiance);
         mirrored.into_iter().for_each(|light| offers.put(light));
         return diffuse;
@@ -44,11 +47,16 @@ pub(super) fn shade(
     let receivers = Receivers::find(graph, surface, space, shift, options, marks);
     let mirrored_homes = points.as_ref().map(|points| mirrored::mark(graph, space, points, marks));
     mark_used(graph, space, marks, (used, counts));
-    let irradiance = gather(graph, space, options, used, radiance);
+    let near = options.near > 0 && receivers.are_regions();
+    if options.near > 0 && !near {
+        graph.skip("diffuse/particles/shade/near", "pixels are read, not regions");
+    }
+    let Gathered { irradiance, far } = gather(graph, space, (options, near), used, radiance);
     if let (Some(points), Some(homes)) = (&points, &mirrored_homes) {
         offers.put(mirrored::light(graph, space, points, homes, irradiance));
     }
-    receivers.light(graph, surface, space, shift, irradiance)
+    let near = far.map(|far| Near { far, radiance, side: options.near });
+    receivers.light(graph, (surface, shift), space, irradiance, near)
 }
 
 /// Marks the particles in the lists of those that are marked.
@@ -71,24 +79,35 @@ fn mark_used(
 }
 
 /// The irradiance of those that are used.
+struct Gathered {
+    irradiance: BufferRef<[f32; 4]>,
+    /// By what is not near (glsl/particles/gather.comp).
+    far: Option<BufferRef<[f32; 4]>>,
+}
+
 fn gather(
     graph: &mut Graph<'_>,
     space: &ParticleSpace,
-    options: &ParticlesOptions,
+    (options, near): (&ParticlesOptions, bool),
     used: BufferRef<u32>,
     radiance: BufferRef<[f32; 4]>,
-) -> BufferRef<[f32; 4]> {
+) -> Gathered {
     let particle_count = space.count;
-    let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", ((1 + space.turns) * particle_count) as usize);
+    let texels = ((1 + space.turns) * particle_count) as usize;
+    let irradiance = graph.buffer::<[f32; 4]>("particles.irradiance", texels);
+    let far = near.then(|| graph.buffer::<[f32; 4]>("particles.far", texels));
     for (number, chunk) in space.chunks.iter().enumerate() {
+        let into = |whole: BufferRef<[f32; 4]>| if number == 0 { whole.start_then_read() } else { whole.read_write() };
         let pass = Gather {
             turns: space.turns,
+            near: u32::from(near),
             particles: space.group.clone(),
             used: used.texels(WORD),
             links: chunk.links.texels(WORD),
             radiance: radiance.texels(FLOATS4),
             matter: space.matter.texels(FLOATS4),
-            irradiance: if number == 0 { irradiance.start_then_read() } else { irradiance.read_write() },
+            irradiance: into(irradiance),
+            far: far.map_or(ReadWriteBuffer::absent(), into),
             push: GatherPush {
                 first: chunk.first,
                 count: chunk.count,
@@ -99,5 +118,5 @@ fn gather(
         };
         graph.pass(&format!("diffuse/particles/gather.{number}"), pass).threads([chunk.count, 1, 1]);
     }
-    irradiance
+    Gathered { irradiance, far }
 }

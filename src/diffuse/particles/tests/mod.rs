@@ -5,6 +5,7 @@ mod events;
 mod lamps;
 mod mesh;
 mod moving;
+mod near;
 mod receivers;
 mod transport;
 
