@@ -229,6 +229,8 @@ pub(crate) enum BufferUse {
     Start,
     /// Reads or keeps what it does not write.
     Modify,
+    /// What stands for nothing: the program could read and write it, and is specialised not to.
+    Absent,
     Texels(vk::Format),
     Indirect,
     Clear,

@@ -370,7 +370,7 @@ impl<'s> Graph<'s> {
                 let resource = &mut self.resources[*buffer];
                 resource.buffer_usage |= match usage {
                     BufferUse::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,
-                    BufferUse::Read | BufferUse::Write | BufferUse::Start | BufferUse::Modify => {
+                    BufferUse::Read | BufferUse::Write | BufferUse::Start | BufferUse::Modify | BufferUse::Absent => {
                         vk::BufferUsageFlags::STORAGE_BUFFER
                     }
                     BufferUse::Texels(_) => vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
@@ -397,7 +397,11 @@ pub(super) fn places(access: &Access) -> Vec<(Place, bool, bool)> {
         }
         Access::Buffer { buffer, usage } => {
             let (reads, writes) = match usage {
-                BufferUse::Uniform | BufferUse::Read | BufferUse::Texels(_) | BufferUse::Indirect => (true, false),
+                BufferUse::Uniform
+                | BufferUse::Read
+                | BufferUse::Absent
+                | BufferUse::Texels(_)
+                | BufferUse::Indirect => (true, false),
                 BufferUse::Write | BufferUse::Start | BufferUse::Clear => (false, true),
                 BufferUse::Modify => (true, true),
             };

@@ -99,7 +99,8 @@ fn buffer_need(usage: BufferUse, shaders: vk::PipelineStageFlags2) -> Need {
         // Devices with small texel buffers read storage buffers in their place.
         BufferUse::Texels(_) => (shaders, A::SHADER_SAMPLED_READ | A::SHADER_STORAGE_READ, false),
         BufferUse::Write | BufferUse::Start => (shaders, A::SHADER_STORAGE_WRITE, true),
-        BufferUse::Modify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true),
+        // Validation knows nothing of what a program is specialised to, and takes this for a write.
+        BufferUse::Absent | BufferUse::Modify => (shaders, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, true),
         BufferUse::Indirect => (S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, false),
         BufferUse::Clear => (S::ALL_TRANSFER, A::TRANSFER_WRITE, true),
     };

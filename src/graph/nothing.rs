@@ -31,7 +31,7 @@ impl Graph<'_> {
                 self.no_buffer().access(BufferUse::Texels(vk::Format::R32G32B32A32_UINT))
             }
             BindingKind::TexelBuffer => self.no_buffer().access(BufferUse::Texels(vk::Format::R32G32B32A32_SFLOAT)),
-            BindingKind::Storage => self.no_buffer().access(BufferUse::Read),
+            BindingKind::Storage => self.no_buffer().access(BufferUse::Absent),
             BindingKind::StorageImage(_) | BindingKind::Uniform => {
                 unreachable!("storage images and uniform blocks are never left out")
             }
