@@ -3,14 +3,17 @@
 //
 //   d_0 = 2,   d_{i+1} = max((d_i + d_i·s)/(1 − s), d_i + 1)
 //
-// in the level whose voxels are w = max(2·d_i·s, 1) wide, and the samples' opacities α_i are taken off visibility front to back:
+// in the level whose voxels are w = max(2·d_i·s, 1) wide: equations 4.14 to 4.16 with the aperture as the point sees it, the level by the diameter in place of the radius, and opacity
+// α_i, which is that of a way of w, corrected to the way that a sample stands for. A point within the sphere sees it. h (VOXELS_CONE_WIDTH) is 1 in the thesis; filtered samples spread
+// twice as wide as a disc of their voxels' width, so that one half meets the penumbra.
 //
-//   β_i = α_i·(d_{i+1} − d_{i−1})/2w   V_{i+1} = max(V_i − β_i·V_{i−1}, 0)
+// Visibility is a product over *occluders*, front to back, of 1 − b, where the thesis (4.17) has one over samples. An occluder is what samples meet without a gap: what hides half of the
+// cone hides the same half for as long as the cone runs along it. It blocks b, the most of
 //
-// Equations 4.14 to 4.17 with the aperture as the point sees it, the level by the diameter in place of the radius, and opacity, which is that of a way of w, corrected to the way that a
-// sample stands for. A point within the sphere sees it. In place of the product of 1 − α a sample takes its part of what was there before the sample before it: a wall has weight 1 in the two
-// samples around it together, t in one and 1 − t in the other, of which the product leaves t·(1 − t) open, a sixth of the light behind it in the mean. h (VOXELS_CONE_WIDTH) is 1 in
-// the thesis; filtered samples spread twice as wide as a disc of their voxels' width, so that one half meets the penumbra.
+//   α_i,   α_i + α_{i+1} − α_{i−1} − α_{i+2}
+//
+// The second is for walls, of which two samples around them meet t and 1 − t: together they block all, and a product would leave t·(1 − t) open, a sixth of the light in the mean.
+// What an occluder blocks is forgotten by a fifth with every sample, so that another one behind it counts again.
 //
 // The cone starts two voxels from the point, and ends before the group's own surface: where a sample would reach a plane through the middle with the group's normal,
 // or the sphere.
@@ -26,6 +29,10 @@ const float CONE_WIDEST = 0.9;
 // Of a cone's diameter, how far a sample's weights reach from its middle; and how far beyond its plane a surface fills voxels.
 const float CONE_SAMPLE_REACH = 1.5;
 const float CONE_SURFACE_REACH = 1.5;
+// A wall between two levels' voxels has a little less than 1 in both samples together.
+const float CONE_WALL = 1.1;
+// Of what an occluder blocks, how much still counts a sample later.
+const float CONE_MEMORY = 0.8;
 // Visibility that counts as none.
 const float CONE_LEAST = 1.0 / 512.0;
 
@@ -34,6 +41,25 @@ struct ConeWork {
     uint samples;
     uint skipped;
 };
+
+// What the samples of a cone leave of the light.
+struct ConeLight {
+    float visibility;
+    float blocked;  // by the occluder that the cone is in
+    vec3 before;    // the last three samples
+};
+
+// Takes the next sample.
+void pass_sample(inout ConeLight light, float opacity) {
+    float both = light.before.x + light.before.y;
+    float occluder = min(max(CONE_WALL * (both - light.before.z - opacity), max(light.before.x, light.before.y)), 1.0);
+    float still = CONE_MEMORY * light.blocked;
+    if (occluder > still) {
+        light.visibility *= (1.0 - occluder) / (1.0 - still);
+    }
+    light.blocked = max(occluder, still);
+    light.before = vec3(opacity, light.before.xy);
+}
 
 float cone_opacity(vec3 place, vec3 direction, float diameter) {
     vec4 opacity = textureLod(voxel_opacity, place / vec3(voxel_grid.dims), log2(diameter));
@@ -70,14 +96,13 @@ float cone_visibility(vec3 from_rs, vec3 center_rs, float radius, vec3 normal, i
     float facing = dot(normal, normal) > 0.0 ? clamp(-dot(normal, direction), 1e-3, 1.0) : 1.0;
     float end = cone_end(length, in_voxels, sine, facing);
     float widest = float(1 << (voxel_grid.levels - 1));
-    float visibility = 1.0;
-    float earlier = 1.0;
+    ConeLight light = ConeLight(1.0, 0.0, vec3(0.0));
     float free_until = 0.0;
     // Steps are a voxel long at least.
     int most_steps = int(dot(vec3(voxel_grid.dims), vec3(1.0)));
     float distance = CONE_START;
     float before = distance - 1.0;
-    for (int step = 0; step < most_steps && distance < end && visibility > CONE_LEAST; ++step) {
+    for (int step = 0; step < most_steps && distance < end && light.visibility > CONE_LEAST; ++step) {
         float diameter = clamp(2.0 * distance * sine, 1.0, widest);
         float next = clamp((distance + distance * sine) / (1.0 - sine), distance + 1.0, distance + widest);
         vec3 place = from + distance * direction;
@@ -86,20 +111,20 @@ float cone_visibility(vec3 from_rs, vec3 center_rs, float radius, vec3 normal, i
         if (VOXELS_SKIP_EMPTY != 0u && distance + reach > free_until) {
             free_until = distance + free_distance(place);
         }
-        float blocked = 0.0;
+        float opacity = 0.0;
         if (VOXELS_SKIP_EMPTY != 0u && distance + reach <= free_until) {
             ++work.skipped;
         } else {
-            blocked = cone_opacity(place, direction, diameter) * 0.5 * (next - before) / diameter;
+            opacity = cone_opacity(place, direction, diameter) * 0.5 * (next - before) / diameter;
             ++work.samples;
         }
-        float after = max(visibility - earlier * min(blocked, 1.0), 0.0);
-        earlier = visibility;
-        visibility = after;
+        pass_sample(light, opacity);
         before = distance;
         distance = next;
     }
-    return visibility > CONE_LEAST ? visibility : 0.0;
+    pass_sample(light, 0.0);
+    pass_sample(light, 0.0);
+    return light.visibility > CONE_LEAST ? light.visibility : 0.0;
 }
 
 float cone_visibility(vec3 from_rs, vec3 center_rs, float radius, vec3 normal) {

@@ -38,7 +38,7 @@ impl VoxelGrid {
     }
 
     /// Around a box. `radius`: of the scene, m; what is much flatter has voxels all the same.
-    fn of(low: DVec3, high: DVec3, radius: f64, resolution: u32) -> VoxelGrid {
+    pub(super) fn of(low: DVec3, high: DVec3, radius: f64, resolution: u32) -> VoxelGrid {
         let resolution = resolution.clamp(LEAST_RESOLUTION, MOST_RESOLUTION);
         let levels = level_count(resolution);
         let coarsest = 4.max(1_u32 << (levels - 1));

@@ -46,7 +46,8 @@ pub(crate) fn voxels(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, settings: &
     });
     let known = made.0.borrow().iter().find(|known| known.settings == *settings).cloned();
     known.unwrap_or_else(|| {
-        let voxels = Rc::new(declare(graph, frame.data, frame.geometry, frame.time, settings).0);
+        let grid = VoxelGrid::around(frame.data, settings.resolution);
+        let voxels = Rc::new(declare(graph, (frame.data, frame.geometry), frame.time, grid, settings).0);
         made.0.borrow_mut().push(voxels.clone());
         voxels
     })
@@ -55,12 +56,11 @@ pub(crate) fn voxels(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, settings: &
 /// Declares the passes.
 fn declare(
     graph: &mut Graph<'_>,
-    data: &SceneData,
-    geometry: &Geometry,
+    (data, geometry): (&SceneData, &Geometry),
     time: FrameTime,
+    grid: VoxelGrid,
     settings: &VoxelSettings,
 ) -> (Voxels, Occupancy) {
-    let grid = VoxelGrid::around(data, settings.resolution);
     let occupied = occupancy(graph, (data, geometry), &grid, settings);
     let adapts = settings.adaption > 0.0;
     let adapted = adapts.then(|| opacity::adapted(graph, (data, &grid), occupied.bits, (settings.adaption, time)));

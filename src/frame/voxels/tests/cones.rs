@@ -2,9 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::ball;
 use crate::frame::geometry::Geometry;
 use crate::frame::inputs::FrameTime;
 use crate::frame::scene_data::SceneData;
+use crate::frame::voxels::grid::VoxelGrid;
 use crate::frame::voxels::{VoxelSettings, declare};
 use crate::gpu_tests::scenes::{closed_box, lambert, place, quad};
 use crate::gpu_tests::session::Session;
@@ -38,7 +40,8 @@ fn answers(session: &Session, scene: &Scene, settings: &VoxelSettings, cones: &[
     let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
     let mut graph = Graph::new(&mut store);
     let geometry = Geometry::import(&mut graph, &data);
-    let (voxels, _) = declare(&mut graph, &data, &geometry, FrameTime::default(), settings);
+    let grid = VoxelGrid::around(&data, settings.resolution);
+    let (voxels, _) = declare(&mut graph, (&data, &geometry), FrameTime::default(), grid, settings);
     let texel = |vector: DVec3, last: f64| vector.as_vec3().extend(last as f32).to_array();
     let of_cone = |cone: &Cone| {
         let [from, center] = [cone.from, cone.center].map(|point| point - data.origin);
@@ -187,6 +190,45 @@ fn cones_past_a_half_plane_and_a_square_see_what_rays_see() {
         }
     }
     assert!(worst < 0.1, "{worst}");
+}
+
+/// The share of the group's disc that rays past a ball around the origin reach.
+fn past_ball(cone: &Cone, ball: f64) -> f64 {
+    let toward = (cone.center - cone.from).normalize();
+    let (across, up) = toward.any_orthonormal_pair();
+    let seen = (0..1024).filter(|&index| {
+        let [u, v, ..] = halton(index);
+        let (radius, angle) = (cone.radius * u.sqrt(), std::f64::consts::TAU * v);
+        let way = (cone.center + across * (radius * angle.cos()) + up * (radius * angle.sin()) - cone.from).normalize();
+        (cone.from + way * way.dot(-cone.from)).length() > ball
+    });
+    seen.count() as f64 / 1024.0
+}
+
+#[test]
+fn filling_a_ball_keeps_its_shadow_where_opacity_is_the_mean() {
+    let session = Session::open();
+    let radius = 0.35;
+    let mut scene = closed_box(1.0, lambert([0.5; 3]));
+    let material = scene.add_material(lambert([0.5; 3])).expect("sound");
+    place(&mut scene, vec![ball(radius as f32, 32, material)], DAffine3::IDENTITY);
+    let cone = |index: u32| {
+        let [a, b, c, d, _] = halton(index);
+        let from = DVec3::new(1.2 * a - 0.6, 1.2 * b - 0.6, -0.7);
+        let center = DVec3::new(1.2 * c - 0.6, 1.2 * d - 0.6, 1.0);
+        Cone { from, center, radius: 0.15, normal: DVec3::NEG_Z }
+    };
+    let cones: Vec<Cone> = (0..1024).map(cone).collect();
+    let exact: Vec<f64> = cones.iter().map(|cone| past_ball(cone, radius)).collect();
+    let error = |solid, directional| {
+        let found =
+            answers(&session, &scene, &VoxelSettings { solid, directional, ..VoxelSettings::default() }, &cones);
+        mean(found.iter().zip(&exact).map(|(answer, exact)| (answer.visibility - exact).powi(2))).sqrt()
+    };
+    let [hollow, filled] = [false, true].map(|solid| error(solid, false));
+    let [hollow_along, filled_along] = [false, true].map(|solid| error(solid, true));
+    eprintln!("ball: off by {hollow:.3}, filled {filled:.3}; along axes {hollow_along:.3}, filled {filled_along:.3}");
+    assert!(filled < 0.6 * hollow && filled_along < 0.15 && hollow_along < 0.1);
 }
 
 #[test]

@@ -12,7 +12,14 @@ use glam::DVec3;
 
 use self::read::{Read, voxelise};
 use crate::gpu_tests::scenes::{lambert, place};
+use crate::gpu_tests::session::Session;
 use crate::scene::{MaterialId, Primitive, Scene};
+
+/// Whether the device can draw voxels.
+fn draws(session: &Session) -> bool {
+    let device = session.context.shared_device();
+    device.offer().geometry_shaders && device.traits().draws
+}
 
 /// A scene of these triangles.
 fn soup(positions: Vec<[f32; 3]>) -> Scene {

@@ -56,9 +56,20 @@ fn corners(packed: &types::PackedTriangle) -> [[i64; 3]; 3] {
 
 /// The voxels of a frame of the scene; made again where buffers grew.
 pub(super) fn voxelise(store: &mut Store, scene: &Scene, settings: &VoxelSettings, step: f32) -> Read {
+    voxelise_in(store, scene, settings, step, |data| VoxelGrid::around(data, settings.resolution))
+}
+
+/// The same in a grid of the caller's.
+pub(super) fn voxelise_in(
+    store: &mut Store,
+    scene: &Scene,
+    settings: &VoxelSettings,
+    step: f32,
+    grid: impl Fn(&SceneData) -> VoxelGrid,
+) -> Read {
     let mut outgrown = Vec::new();
     loop {
-        let read = attempt(store, scene, settings, step);
+        let read = attempt(store, scene, settings, step, &grid);
         if read.outgrown.is_empty() {
             return Read { outgrown, ..read };
         }
@@ -67,12 +78,18 @@ pub(super) fn voxelise(store: &mut Store, scene: &Scene, settings: &VoxelSetting
     }
 }
 
-fn attempt(store: &mut Store, scene: &Scene, settings: &VoxelSettings, step: f32) -> Read {
+fn attempt(
+    store: &mut Store,
+    scene: &Scene,
+    settings: &VoxelSettings,
+    step: f32,
+    grid: impl Fn(&SceneData) -> VoxelGrid,
+) -> Read {
     let device = store.device().clone();
     let data = SceneData::update(&device, store.pipelines(), None, scene).expect("the scene fits the device");
     let mut graph = Graph::new(store);
     let geometry = Geometry::import(&mut graph, &data);
-    let (made, occupied) = declare(&mut graph, &data, &geometry, FrameTime { index: 0, step }, settings);
+    let (made, occupied) = declare(&mut graph, (&data, &geometry), FrameTime { index: 0, step }, grid(&data), settings);
     let bits = graph.read_back_buffer(occupied.bits);
     let lists = [graph.read_back_buffer(occupied.triangles), graph.read_back_buffer(occupied.counts)];
     let levels: Vec<_> = (0..made.grid.levels()).map(|level| graph.read_back(made.opacity.mip(level))).collect();

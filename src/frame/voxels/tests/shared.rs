@@ -6,15 +6,15 @@ use std::rc::Rc;
 use ash::vk;
 use glam::{DAffine3, DVec3};
 
-use super::ball;
+use super::{ball, draws};
 
 use crate::frame::light_set::LightSet;
 use crate::frame::scene_data::SceneData;
-use crate::frame::voxels::{VoxelSettings, Voxelisation, shaders, voxels};
+use crate::frame::voxels::{VoxelSettings, Voxelisation, shaders};
 use crate::gpu_tests::scenes::{closed_box, lambert, place, request, view};
 use crate::gpu_tests::session::Session;
 use crate::graph::{Dependence, Graph};
-use crate::method::Inputs;
+use crate::method::{FrameCx, Inputs};
 use crate::renderer::declare::Shared;
 use crate::renderer::{Preset, Settings, Technique, Timing};
 use crate::shaders::selftest::{Cones, ConesPush};
@@ -27,7 +27,7 @@ fn two_that_ask_alike_share_voxels_and_only_listed_programs_run() {
     place(&mut scene, vec![ball(0.3, 8, material)], DAffine3::IDENTITY);
     let settings = Settings::new(Technique::Direct, Preset::Default);
     let request = request([8, 8], view(DVec3::Z, DVec3::ZERO), &[]);
-    let drawn = session.context.shared_device().offer().geometry_shaders.then_some(Voxelisation::Raster);
+    let drawn = draws(&session).then_some(Voxelisation::Raster);
     let most = VoxelSettings { resolution: 32, solid: true, adaption: 1.0, ..VoxelSettings::default() };
     let least = VoxelSettings { skip_empty: false, voxelisation: drawn, ..VoxelSettings::default() };
     for asked in [most, least] {
@@ -38,7 +38,7 @@ fn two_that_ask_alike_share_voxels_and_only_listed_programs_run() {
         let mut graph = Graph::new(&mut store);
         let shared = Shared::declare(&mut graph, &scene, &data, &request, &settings);
         let frame = shared.inputs(&mut graph, &data, &set, None, Inputs::default(), &settings);
-        let made = [voxels(&mut graph, &frame, &asked), voxels(&mut graph, &frame, &asked)];
+        let made = [0, 1].map(|_| FrameCx::new(&mut graph, &frame, Inputs::default()).voxels(&asked));
         assert!(Rc::ptr_eq(&made[0], &made[1]));
         let cone = graph.upload("cone", &[[0.0_f32, 0.0, 0.0, 0.1], [0.5; 4], [0.0; 4]], Dependence::NONE);
         let answers = graph.buffer("answers", 1);
