@@ -74,7 +74,7 @@ float free_distance(vec3 place) {
     return float((distance - 1) * BLOCK);
 }
 
-// Where a cone of this length ends, in voxels. `facing`: the cosine between the light's normal and the way to the point.
+// Where a cone of this length ends, in voxels: within the group's sphere before it starts. `facing`: the cosine between the light's normal and the way to the point.
 float cone_end(float length, float radius, float sine, float facing) {
     float reach = CONE_SAMPLE_REACH;
     float narrow = length - (reach + CONE_SURFACE_REACH) / facing;
@@ -88,7 +88,7 @@ float cone_visibility(vec3 from_rs, vec3 center_rs, float radius, vec3 normal, i
     vec3 way = (center_rs - from_rs) / voxel_grid.size;
     float in_voxels = radius / voxel_grid.size;
     float length = sqrt(dot(way, way));
-    if (length <= max(in_voxels, CONE_START)) {
+    if (length <= CONE_START) {
         return 1.0;
     }
     vec3 direction = way / length;

@@ -246,8 +246,8 @@ fn levels_keep_the_mean_and_walls_stay_closed_along_their_normal() {
         let exact = read.count() as f64 / read.bits.len() as f64;
         for (number, level) in read.levels.iter().enumerate() {
             let off = mean(level, 3) - exact;
-            // Each level rounds by half a step of 255 at most.
-            assert!(off.abs() < 0.5 * number as f64 / 255.0 + 1e-12, "{name}, level {number}: {off}");
+            // Rounding goes both ways: truncated, a level would lose up to half a step of 255.
+            assert!(off.abs() < 5e-4, "{name}, level {number}: {off}");
             eprintln!(
                 "{name}: level {number}: mean {:.5} of {exact:.5}, along x {:.5}",
                 mean(level, 3),
