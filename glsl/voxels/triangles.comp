@@ -74,10 +74,11 @@ uint tiles_of(VoxelTriangle triangle, int axis, uint number, bool solid, bool st
     int size = TILE * push.grid.units;
     ivec2 first = lowest(seen).xy / size;
     ivec2 last = highest(seen).xy / size;
+    bool is_only_one = first == last;
     uint count = 0u;
     for (int row = first.y; row <= last.y; ++row) {
         for (int column = first.x; column <= last.x; ++column) {
-            if (within_edges(a, b, c, area, ivec2(column, row) * size, size)) {
+            if (is_only_one || within_edges(a, b, c, area, ivec2(column, row) * size, size)) {
                 uint at = place + count;
                 uvec2 tile = uvec2(number, uint(column) | uint(row) << 16);
                 if (store && !solid && at < push.tile_capacity) {

@@ -49,7 +49,7 @@ pub(super) fn occupancy(
     settings: &VoxelSettings,
 ) -> Occupancy {
     let chunks = Chunks::of(data, grid, settings.solid);
-    let voxelisation = settings.voxelisation.unwrap_or_else(|| faster(graph));
+    let voxelisation = settings.voxelisation.unwrap_or(Voxelisation::Compute);
     let lists = triangles(graph, geometry, grid, &chunks, voxelisation);
     let bits = graph.buffer::<u32>("voxels.bits", grid.voxel_count().div_ceil(32) as usize);
     graph.fill_buffer("voxels/clear", bits, 0);
@@ -63,11 +63,6 @@ pub(super) fn occupancy(
         graph.skip("voxels/solid", "no closed mesh");
     }
     Occupancy { bits, triangles: lists.triangles, counts: lists.counts }
-}
-
-/// What measures faster on the device.
-fn faster(_: &Graph<'_>) -> Voxelisation {
-    Voxelisation::Compute
 }
 
 fn triangles(

@@ -14,7 +14,7 @@ pub(crate) enum Voxelisation {
 pub(crate) struct VoxelSettings {
     /// Voxels along the longest axis of the scene, 16 to 512.
     pub(crate) resolution: u32,
-    /// `None`: what is faster on the device.
+    /// `None`: `Compute`, which is faster where it was measured.
     pub(crate) voxelisation: Option<Voxelisation>,
     /// Closed meshes are filled.
     pub(crate) solid: bool,
