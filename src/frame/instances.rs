@@ -19,6 +19,8 @@ pub(super) struct Place {
     pub(super) bounds: [[f32; 3]; 2],
     /// In object space, m².
     pub(super) area: f64,
+    /// The box of the solid that it bounds, if it does (`closed_meshes`).
+    pub(super) solid: Option<[[f32; 3]; 2]>,
 }
 
 /// One instance as the host needs it to draw: what to draw, with which material, and where it is.
@@ -34,6 +36,8 @@ pub(crate) struct DrawnInstance {
     /// Which kinds, as the shaders' bits.
     pub(crate) texture_kinds: u32,
     pub(crate) masked: bool,
+    /// The solid that it bounds, or helps to bound.
+    pub(crate) solid: Option<OrientedBox>,
     /// The material reflects or transmits specularly.
     pub(crate) specular: bool,
     /// For culling.
@@ -163,6 +167,10 @@ fn drawn_instance(place: Place, index: usize, material: &Material, to_render: &D
         textured: material.textures().next().is_some(),
         texture_kinds: texture_kinds(material),
         masked: material.alpha != Alpha::Opaque,
+        solid: place.solid.map(|bounds| {
+            let [low, high] = bounds.map(|corner| DVec3::from(corner.map(f64::from)));
+            OrientedBox::of(to_render, low, high)
+        }),
         specular: has_specular_lobe(material),
         whole: OrientedBox::of(to_render, low, high),
         bulk: None,

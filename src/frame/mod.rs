@@ -5,6 +5,7 @@
 
 pub(crate) mod camera;
 pub(crate) mod check;
+mod closed_meshes;
 pub(crate) mod compose;
 pub(crate) mod direct_light;
 mod drawn_triangles;
@@ -27,3 +28,5 @@ pub(crate) mod tonemap;
 #[cfg(test)]
 pub(crate) mod twins;
 pub(crate) mod view_layout;
+#[cfg_attr(not(test), expect(dead_code, reason = "tests make voxels; the method that does so comes later"))]
+pub(crate) mod voxels;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{DMat3, DVec3};
 
+use super::closed_meshes::solids;
 use super::drawn_triangles::DrawnTriangles;
 pub(crate) use super::instances::DrawnInstance;
 use super::instances::{Place, area_of, surface_area, upload_instances};
@@ -41,7 +42,7 @@ pub(crate) struct MeshData {
 
 /// Everything of a scene that passes read, with a key for each part.
 pub(crate) struct SceneData {
-    identity: u64,
+    pub(crate) identity: u64,
     /// Where render space has its zero: of the scene at rest, see [`Extent`](crate::scene::Extent).
     pub(crate) origin: DVec3,
     /// Of what matters, in render space.
@@ -160,12 +161,13 @@ impl MeshData {
         let mut places = Vec::new();
         let (mut first_index, mut vertex_offset) = (0_u32, 0_i32);
         for mesh in scene.meshes() {
-            let mut place = |primitive: &Primitive| {
+            let boxes: Vec<_> = mesh.primitives.iter().map(|primitive| box_of(&primitive.positions)).collect();
+            let solids = solids(&mesh.primitives, &boxes);
+            let mut place = |(primitive, (bounds, solid))| {
                 let drawn = rest.next().expect("one for each primitive");
                 let index_count = narrow(drawn.indices.len())?;
-                let bounds = box_of(&primitive.positions);
                 let area = area_of(primitive, DMat3::IDENTITY);
-                let place = Place { first_index, index_count, vertex_offset, bounds, area };
+                let place = Place { first_index, index_count, vertex_offset, bounds, area, solid };
                 first_index = first_index.checked_add(index_count).ok_or_else(too_many)?;
                 vertex_offset = i32::try_from(drawn.vertices.len())
                     .ok()
@@ -173,7 +175,13 @@ impl MeshData {
                     .ok_or_else(too_many)?;
                 Ok(place)
             };
-            places.push(mesh.primitives.iter().map(&mut place).collect::<Result<Vec<_>, VulkanError>>()?);
+            places.push(
+                mesh.primitives
+                    .iter()
+                    .zip(boxes.into_iter().zip(solids))
+                    .map(&mut place)
+                    .collect::<Result<Vec<_>, VulkanError>>()?,
+            );
         }
         let shapes = scene.shapes().iter().flatten();
         let primitives: Vec<(&Primitive, &DrawnTriangles)> = primitives.into_iter().zip(&drawn).collect();

@@ -1,8 +1,11 @@
 //! What a method declares its passes with: the graph, and what all methods share of a frame.
 
+use std::rc::Rc;
+
 use crate::frame::inputs::FrameInputs;
 use crate::frame::light_views::LightViews;
 use crate::frame::rays::TracedScene;
+use crate::frame::voxels::{VoxelSettings, Voxels, voxels};
 use crate::graph::Graph;
 
 /// What a method takes of a frame, besides the G-buffer.
@@ -63,6 +66,12 @@ impl<'f, 's> FrameCx<'f, 's> {
     /// The scene as rays meet it, for a method that sends rays.
     pub(crate) fn rays(&self) -> Option<&'f TracedScene> {
         self.frame.traced.filter(|_| self.inputs.rays != Rays::None)
+    }
+
+    /// The scene as voxels; methods that ask alike share them.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the method that asks for voxels comes later"))]
+    pub(crate) fn voxels(&mut self, settings: &VoxelSettings) -> Rc<Voxels> {
+        voxels(self.graph, self.frame, settings)
     }
 
     /// The views from the lights, and what their texels reflect, for a method that takes them.

@@ -70,6 +70,7 @@ impl Device {
             draw_indirect_first_instance: vk::TRUE,
             independent_blend: vk::TRUE,
             // Optional ones: used where present.
+            geometry_shader: survey.features.geometry_shader,
             multi_draw_indirect: survey.features.multi_draw_indirect,
             pipeline_statistics_query: survey.features.pipeline_statistics_query,
             sampler_anisotropy: survey.features.sampler_anisotropy,

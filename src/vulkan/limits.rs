@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use ash::vk;
 
-use super::program::{Program, StageNeeds};
+use super::program::{Program, StageKind, StageNeeds};
 
 /// What a device offers, as far as programs and images ask for it.
 #[derive(Clone, Debug)]
@@ -18,6 +18,7 @@ pub(crate) struct Offer {
     pub(crate) invocations: u32,
     pub(crate) local_size: [u32; 3],
     pub(crate) subgroup_stages: vk::ShaderStageFlags,
+    pub(crate) geometry_shaders: bool,
     /// What images with optimal tiling may serve for, of each format of [`FORMATS`].
     pub(crate) formats: BTreeMap<vk::Format, vk::FormatFeatureFlags>,
 }
@@ -26,6 +27,7 @@ impl Offer {
     pub(crate) fn new(
         limits: &vk::PhysicalDeviceLimits,
         vulkan11: &vk::PhysicalDeviceVulkan11Properties<'_>,
+        features: &vk::PhysicalDeviceFeatures,
         formats: BTreeMap<vk::Format, vk::FormatFeatureFlags>,
     ) -> Offer {
         Offer {
@@ -44,6 +46,7 @@ impl Offer {
             invocations: limits.max_compute_work_group_invocations,
             local_size: limits.max_compute_work_group_size,
             subgroup_stages: vulkan11.subgroup_supported_stages,
+            geometry_shaders: features.geometry_shader == vk::TRUE,
             formats,
         }
     }
@@ -73,6 +76,9 @@ impl Offer {
             more(needs.bindings(), self.stage_resources, "resources in a stage");
             more(needs.shared_bytes, offer.shared_bytes, "bytes of memory shared by a group");
         }
+        if !self.geometry_shaders && program.stages.iter().any(|stage| stage.kind == StageKind::Geometry) {
+            faults.push("geometry shaders".to_owned());
+        }
         for stage in program.stages {
             let asked = stage.needs.subgroup_operations;
             let absent = vk::SubgroupFeatureFlags::from_raw(asked & !self.of_stage.subgroup_operations);
@@ -98,7 +104,7 @@ pub(super) const FORMATS: &[vk::Format] =
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use super::super::program::{Binding, BindingKind, Spirv, Stage, StageKind};
+    use super::super::program::{Binding, BindingKind, Spirv, Stage};
     use super::*;
 
     /// More of everything than any program asks for.
@@ -120,6 +126,7 @@ pub(crate) mod tests {
             invocations: 1024,
             local_size: [1024; 3],
             subgroup_stages: vk::ShaderStageFlags::ALL,
+            geometry_shaders: true,
             formats: all.collect(),
         }
     }
@@ -177,5 +184,29 @@ pub(crate) mod tests {
         }
         let elsewhere = with(|offer| offer.subgroup_stages = vk::ShaderStageFlags::FRAGMENT);
         assert_eq!(elsewhere, "subgroup operations in compute shaders");
+    }
+
+    #[test]
+    fn a_device_without_geometry_shaders_lacks_programs_that_have_one() {
+        const NEEDS: StageNeeds = StageNeeds {
+            sampled_images: 0,
+            samplers: 0,
+            storage_images: 0,
+            uniform_buffers: 0,
+            storage_buffers: 0,
+            shared_bytes: 0,
+            subgroup_operations: 0,
+        };
+        const STAGES: &[Stage] = &[Stage { kind: StageKind::Geometry, needs: NEEDS, spirv: Spirv(&[]) }];
+        let program = Program {
+            name: "test/geometry",
+            stages: STAGES,
+            bindings: &[],
+            push_size: 0,
+            constants: &[],
+            local_size: [1; 3],
+        };
+        assert_eq!(generous().lacks(&program), Vec::<String>::new());
+        assert_eq!(Offer { geometry_shaders: false, ..generous() }.lacks(&program), ["geometry shaders"]);
     }
 }

@@ -80,7 +80,7 @@ impl Survey {
             }
             (format, images)
         };
-        let offer = Offer::new(limits, &vulkan11, FORMATS.iter().copied().map(features_of).collect());
+        let offer = Offer::new(limits, &vulkan11, &features, FORMATS.iter().copied().map(features_of).collect());
         let device_bytes: u64 = memory
             .memory_heaps_as_slice()
             .iter()
