@@ -1,5 +1,7 @@
 //! What a method declares its passes with: the graph, and what all methods share of a frame.
 
+use std::rc::Rc;
+
 use crate::frame::inputs::FrameInputs;
 use crate::frame::light_views::LightViews;
 use crate::frame::rays::TracedScene;
@@ -63,6 +65,20 @@ impl<'f, 's> FrameCx<'f, 's> {
     /// The scene as rays meet it, for a method that sends rays.
     pub(crate) fn rays(&self) -> Option<&'f TracedScene> {
         self.frame.traced.filter(|_| self.inputs.rays != Rays::None)
+    }
+
+    /// What several methods share: made where the first of them asks, once for each type and what it is made by.
+    pub(crate) fn shared<P: PartialEq + 'static, T: 'static>(
+        &mut self,
+        parameters: P,
+        make: impl FnOnce(&mut Self, &P) -> T,
+    ) -> Rc<T> {
+        if let Some(known) = self.frame.offers.find::<(P, Rc<T>)>(|(made_by, _)| *made_by == parameters) {
+            return known.1.clone();
+        }
+        let made = Rc::new(make(self, &parameters));
+        self.frame.offers.put((parameters, made.clone()));
+        made
     }
 
     /// The views from the lights, and what their texels reflect, for a method that takes them.
