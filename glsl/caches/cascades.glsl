@@ -68,6 +68,12 @@ ivec3 corner_of(int corner) {
     return ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
 }
 
+// From the lowest node's address to a corner's.
+uint corner_offset(int resolution, int corner) {
+    ivec3 node = corner_of(corner);
+    return uint((node.z * resolution + node.y) * resolution + node.x);
+}
+
 int cascade_of_address(Cascades cascades, uint address) {
     return int(address) / (cascades.resolution * cascades.resolution * cascades.resolution);
 }

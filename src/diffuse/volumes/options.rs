@@ -44,7 +44,7 @@ options! {
     /// Bands of spherical harmonics.
     bands: u32 = 3, paper = 2; OptionKind::OneOf(&[2, 3]), "bands", "linear";
     /// Whether light may be blocked on its way to a cache.
-    visibility: VolumesVisibility = VolumesVisibility::Rays; OptionKind::Choice(VolumesVisibility::NAMES), "", "";
+    visibility: VolumesVisibility = VolumesVisibility::Rays, paper = VolumesVisibility::None; OptionKind::Choice(VolumesVisibility::NAMES), "", "";
     /// 4 to this power of lights share one visibility.
     lod: u32 = 1, draft = 2, paper = 2; OptionKind::Integer(0, 4), "", "falls";
     /// Where caches lie.
