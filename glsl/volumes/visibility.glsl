@@ -6,15 +6,12 @@
 #include "lib/vpl.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
+#include "volumes/rays.glsl"
 
 const uint VISIBILITY_NONE = 0u;
 const uint VISIBILITY_RAYS = 1u;
 
 layout(constant_id = 1) const uint VISIBILITY = VISIBILITY_NONE;
-
-struct VolumeRays {
-    vec3 shift;  // from render space to the rays' space
-};
 
 // `middle`: the light that a ray is sent to.
 float visibility_of_group(VolumeRays rays, LightGroup group, Vpl middle, vec3 position_rs) {

@@ -1,13 +1,10 @@
 //! The light of all virtual area lights at all caches.
 
-use glam::DVec3;
-
 use super::options::{VolumesOptions, VolumesVisibility};
+use super::rays::rays_of;
 use crate::frame::caches::{AreaLights, Caches};
 use crate::graph::bindings::BufferRef;
 use crate::method::FrameCx;
-use crate::shaders::groups::SceneRays;
-use crate::shaders::types::VolumeRays;
 use crate::shaders::volumes::{Light, LightPush};
 
 /// Invocations of a cache, which share the groups of lights.
@@ -42,13 +39,11 @@ pub(super) fn light(
     caches: &Caches,
     options: &VolumesOptions,
 ) -> BufferRef<f32> {
-    let (origin, traced) = (cx.frame.data.origin, cx.rays());
+    let (scene, rays) = rays_of(cx);
     let graph = &mut *cx.graph;
-    let shift = traced.map_or(DVec3::ZERO, |traced| origin - traced.origin).as_vec3().to_array();
-    let scene = traced.map_or_else(SceneRays::absent, |traced| traced.rays(graph));
     let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);
-    let rays = options.visibility == VolumesVisibility::Rays;
-    let most = groups_at_once(lights, rays, graph.traits().loop_steps);
+    let traces = options.visibility == VolumesVisibility::Rays;
+    let most = groups_at_once(lights, traces, graph.traits().loop_steps);
     for first in (0..lights.group_count.max(1)).step_by(most as usize) {
         let pass = Light {
             scene_rays: scene.clone(),
@@ -58,7 +53,7 @@ pub(super) fn light(
             bands: options.bands,
             visibility: kind_of(options.visibility),
             push: LightPush {
-                rays: VolumeRays { shift },
+                rays,
                 first_group: first.cast_signed(),
                 end_group: first.saturating_add(most).min(lights.group_count).cast_signed(),
                 capacity: caches.capacity,

@@ -8,12 +8,13 @@
 mod apply;
 mod light;
 pub(crate) mod options;
+mod rays;
 #[cfg(test)]
 mod tests;
 
 use std::rc::Rc;
 
-use self::options::{VolumesOptions, VolumesPlacement, VolumesVal, VolumesVisibility};
+use self::options::{VolumesOptions, VolumesPlacement, VolumesVal, VolumesVisibility, VolumesWeights};
 use crate::frame::caches::{AreaLights, Caches, CascadeRule, LightRule, allocate, area_lights};
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
@@ -33,7 +34,8 @@ impl Method for Volumes {
     }
 
     fn inputs(options: &VolumesOptions) -> Inputs {
-        let rays = if options.visibility == VolumesVisibility::Rays { Rays::ToSurfaces } else { Rays::None };
+        let traces = options.visibility == VolumesVisibility::Rays || options.weights == VolumesWeights::Rays;
+        let rays = if traces { Rays::ToSurfaces } else { Rays::None };
         Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() }
     }
 
@@ -73,6 +75,6 @@ pub(crate) fn volumes(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Mad
     let caches: Rc<Caches> =
         cx.shared(cache_rule(options), |cx, (rule, moves)| allocate(cx.graph, cx.frame, rule, *moves));
     let light = light::light(cx, &lights, &caches, options);
-    let diffuse = apply::apply(cx, &caches, light, options.bands);
+    let diffuse = apply::apply(cx, &caches, light, options);
     Made { diffuse, lights }
 }

@@ -21,6 +21,15 @@ choices! {
     }
 }
 choices! {
+    /// What caches count by beside their distances.
+    VolumesWeights {
+        /// Nothing: the paper.
+        Trilinear = "trilinear",
+        /// Whether they are seen: a ray from each pixel to each of its caches.
+        Rays = "rays",
+    }
+}
+choices! {
     /// What a virtual area light's area A adds to the squared distance d².
     VolumesVal {
         /// A: the paper.
@@ -49,6 +58,8 @@ options! {
     lod: u32 = 1, draft = 2, paper = 2; OptionKind::Integer(0, 4), "", "falls";
     /// Where caches lie.
     placement: VolumesPlacement = VolumesPlacement::Visible, paper = VolumesPlacement::Grid; OptionKind::Choice(VolumesPlacement::NAMES), "", "";
+    /// What caches count by, beside their distances, for a pixel between them.
+    weights: VolumesWeights = VolumesWeights::Trilinear, high = VolumesWeights::Rays; OptionKind::Choice(VolumesWeights::NAMES), "", "";
     /// What the area of a virtual area light adds to the squared distance.
     val: VolumesVal = VolumesVal::Disc, paper = VolumesVal::Paper; OptionKind::Choice(VolumesVal::NAMES), "", "";
 }

@@ -26,14 +26,21 @@ fn pictures_are_those_of_paths_of_one_bounce() {
     }
 }
 
+/// Rays from caches to lights, and from pixels to caches.
 #[test]
 fn rays_keep_light_out_of_dark_rooms() {
     let session = Session::open();
-    let of =
-        |visibility| leaks(&session, &settings_of(Technique::Volumes, &[("volumes.visibility", visibility)]), [32, 24]);
-    let (rays, none) = (of("rays"), of("none"));
-    println!("{rays:?} of the lit hall's light, without visibility {none:?}");
-    assert!(rays.iter().zip(none).all(|(&with, without)| with < 0.2 * without), "{rays:?} {none:?}");
+    let of = |visibility, weights| {
+        let changes = [("volumes.visibility", visibility), ("volumes.weights", weights)];
+        leaks(&session, &settings_of(Technique::Volumes, &changes), [32, 24])
+    };
+    let (none, rays, both) = (of("none", "trilinear"), of("rays", "trilinear"), of("rays", "rays"));
+    println!(
+        "of the lit hall's light: {none:?} without rays, {rays:?} with rays to lights, {both:?} with rays to caches too"
+    );
+    assert!(none.iter().all(|&leak| leak > 0.1), "{none:?}");
+    assert!(rays.iter().all(|&leak| leak < 1e-3), "{rays:?}");
+    assert!(both[1..].iter().zip(&rays[1..]).all(|(with, without)| *with < 0.01 * without), "{both:?} {rays:?}");
 }
 
 #[test]
@@ -41,15 +48,17 @@ fn what_did_not_change_stands_and_repeats_are_the_same_bits() {
     let session = Session::open();
     let mut scene = builtin("cornell-point");
     let camera = scene.camera_view(None).expect("its camera");
-    let asked = |camera| FrameRequest { timing: Timing::Passes, ..request([50, 40], camera, &[Slot::Diffuse]) };
+    let asked = |camera| FrameRequest { timing: Timing::Passes, ..request([512, 384], camera, &[Slot::Diffuse]) };
     let ran = |frame: &_| [passes_run(frame, "caches"), passes_run(frame, "diffuse/volumes")].concat();
-    let mut renderer = session.renderer(&settings_of(Technique::Volumes, &[]));
+    // So large that caches get other numbers each time.
+    let mut renderer = session.renderer(&settings_of(Technique::Volumes, &[("volumes.lights", "16")]));
     let first = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
     let again = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
     assert!(ran(&again).is_empty(), "{:?}", ran(&again));
     for _ in 0..3 {
         renderer.invalidate();
         let anew = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+        assert!(!ran(&anew).is_empty(), "it is made anew");
         assert_eq!(first.slots, anew.slots, "bit by bit");
     }
 
