@@ -114,10 +114,16 @@ fn no_pixel_lacks_a_cache() {
 fn room_for_caches_grows() {
     let session = Session::open();
     let scene = builtin("cornell-point");
-    let asked = request([128, 96], scene.camera_view(None).expect("its camera"), &[Slot::Diffuse]);
-    let fine = [("volumes.resolution", "128"), ("volumes.visibility", "none"), ("volumes.lights", "16")];
+    let asked = request([320, 240], scene.camera_view(None).expect("its camera"), &[Slot::Diffuse]);
+    let fine = [
+        ("volumes.resolution", "128"),
+        ("volumes.cascades", "5"),
+        ("volumes.cell", "0.01"),
+        ("volumes.visibility", "none"),
+        ("volumes.lights", "16"),
+    ];
     let [caches, missing] = counted(&session, &scene, &asked, &fine);
-    assert!(caches > 2048 && missing == 0, "{caches} caches, {missing} missing");
+    assert!(caches > 8192 && missing == 0, "{caches} caches, {missing} missing");
 }
 
 fn image(session: &Session, scene: &Scene) -> crate::renderer::ColorImage {

@@ -15,8 +15,8 @@ const WORD: vk::Format = vk::Format::R32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Caches, and what pixels ask for, that memory is held for at first.
-const LEAST: usize = 2048;
-const LEAST_ASKS: usize = 8192;
+const LEAST: usize = 8192;
+const LEAST_ASKS: usize = 32768;
 /// Ways along the axes (glsl/caches/moves.glsl).
 const WAYS: usize = 6;
 /// How often caches move: two planes at a right angle, however they stand, take two.
