@@ -3,6 +3,7 @@
 //! Everything here works in *render space* (suffix `_rs`): the world's axes in metres, minus an origin among
 //! its surfaces (`src/scene/extent.rs`), so that a scene far from the world's origin loses no precision in 32-bit floats.
 
+pub(crate) mod caches;
 pub(crate) mod camera;
 pub(crate) mod check;
 mod closed_meshes;
@@ -28,5 +29,4 @@ pub(crate) mod tonemap;
 #[cfg(test)]
 pub(crate) mod twins;
 pub(crate) mod view_layout;
-#[cfg_attr(not(test), expect(dead_code, reason = "tests make voxels; the method that does so comes later"))]
 pub(crate) mod voxels;

@@ -20,4 +20,10 @@ impl Offers {
     pub(crate) fn get<T: 'static>(&self) -> Option<Rc<T>> {
         self.values.borrow().iter().find_map(|value| value.clone().downcast::<T>().ok())
     }
+
+    /// The first of those of this type that `wanted` is true of.
+    pub(crate) fn find<T: 'static>(&self, wanted: impl Fn(&T) -> bool) -> Option<Rc<T>> {
+        let values = self.values.borrow();
+        values.iter().filter_map(|value| value.clone().downcast::<T>().ok()).find(|value| wanted(value))
+    }
 }

@@ -32,7 +32,7 @@ fn assert_flux(what: &str, found: DVec3, expected: DVec3) {
 }
 
 /// ∫ I·attenuation dω by Simpson's rule over the cosine.
-fn spot_power(inner: f64, outer: f64) -> f64 {
+pub(super) fn spot_power(inner: f64, outer: f64) -> f64 {
     let (low, high) = (outer.cos(), 1.0);
     let attenuation = |cosine: f64| ((cosine - low) / (inner.cos() - low).max(0.001)).clamp(0.0, 1.0).powi(2);
     let steps = 200_000;

@@ -176,6 +176,7 @@ fn what_is_said_to_be_written_whole_is() {
         ("ring", hybrid(&[("photons.splat", "tiles"), ("vpl.visibility", "ism"), ("photons.trace", "march")])),
         ("ring", hybrid(&[("photons.splat", "discs"), ("photons.trace", "lines"), ("vpl.shading", "stencil")])),
         ("textured", Settings::new(Technique::Rsm, Preset::Draft)),
+        ("textured", Settings::new(Technique::Volumes, Preset::Draft)),
         ("lights", hybrid(&[("vpl.shading", "pixels")])),
     ];
     for (name, settings) in frames {

@@ -53,12 +53,12 @@ pub(super) fn transformed(scene: &Scene, transform: DAffine3, scale: f64) -> Sce
 }
 
 /// How far two images are apart, over the mean of the first; without the thousandth of the pixels that is furthest off.
-struct Difference {
-    rmse: f64,
-    most: f64,
+pub(super) struct Difference {
+    pub(super) rmse: f64,
+    pub(super) most: f64,
 }
 
-fn difference(original: &ColorImage, copy: &ColorImage) -> Difference {
+pub(super) fn difference(original: &ColorImage, copy: &ColorImage) -> Difference {
     let channels = original.pixels.iter().flatten().map(|&channel| f64::from(channel));
     let mean = channels.sum::<f64>() / (3.0 * original.pixels.len() as f64);
     let off = |(before, after): (&[f32; 3], &[f32; 3])| {

@@ -66,6 +66,8 @@ mod tonemap;
 mod trace;
 mod traced_direct;
 mod traits;
+mod volumes_caches;
+mod volumes_lights;
 mod vpl_paths;
 mod vpl_regions;
 mod vpl_samples;

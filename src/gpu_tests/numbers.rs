@@ -46,7 +46,7 @@ fn timed(scene: &Scene, technique: Technique, session: &Session, camera: crate::
 fn slivers_spoil_no_sum() {
     let session = Session::open();
     let scene = slivers();
-    for technique in [Technique::Rsm, Technique::Hybrid] {
+    for technique in [Technique::Rsm, Technique::Hybrid, Technique::Volumes] {
         let camera = view(DVec3::new(1.9, 1.4, 1.3), DVec3::new(0.0, 0.1, 0.0));
         let [rows, dropped] = timed(&scene, technique, &session, camera);
         assert!(rows > 0 && dropped == 0, "{technique:?}: {rows} rows, {dropped} dropped");
@@ -57,7 +57,9 @@ fn slivers_spoil_no_sum() {
 fn built_in_scenes_drop_nothing() {
     let session = Session::open();
     let hybrid = ["ring", "textured", "lights"].map(|name| (name, Technique::Hybrid));
-    for (name, technique) in hybrid.into_iter().chain([("cornell-point", Technique::Path)]) {
+    for (name, technique) in
+        hybrid.into_iter().chain([("lights", Technique::Volumes), ("cornell-point", Technique::Path)])
+    {
         let scene = builtin(name);
         let [rows, dropped] = timed(&scene, technique, &session, scene.camera_view(None).expect("a camera"));
         assert!(rows > 0 && dropped == 0, "{name}: {rows} rows, {dropped} dropped");
@@ -85,7 +87,13 @@ fn a_frame_that_is_no_number_names_the_pass() {
 #[test]
 fn sound_passes_are_not_blamed() {
     let session = Session::open();
-    for (name, technique) in [("ring", Technique::Hybrid), ("textured", Technique::Rsm), ("ring", Technique::Path)] {
+    let all = [
+        ("ring", Technique::Hybrid),
+        ("textured", Technique::Rsm),
+        ("textured", Technique::Volumes),
+        ("ring", Technique::Path),
+    ];
+    for (name, technique) in all {
         let scene = builtin(name);
         let request = request([48, 32], scene.camera_view(None).expect("a camera"), &Slot::ALL);
         let mut renderer = session.renderer(&Settings::new(technique, Preset::Draft));

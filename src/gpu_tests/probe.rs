@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec4, Vec3, Vec4};
 
 use super::session::Session;
-use crate::diffuse::{rsm, vpl};
+use crate::diffuse::{rsm, volumes, vpl};
 use crate::frame::gbuffer::GBuffer;
 use crate::frame::light_set::LightSet;
 use crate::frame::light_views::ReflectiveViews;
@@ -31,6 +31,7 @@ pub(super) struct Declared {
     pub(super) gbuffer: GBuffer,
     pub(super) reflective: Option<ReflectiveViews>,
     pub(super) rsm: Option<rsm::Made>,
+    pub(super) volumes: Option<volumes::Made>,
     pub(super) vpl: Option<vpl::Made>,
     slots: Vec<(Slot, ImageRef)>,
 }
@@ -66,6 +67,7 @@ pub(super) fn probe(
         gbuffer: shared.surface.clone(),
         reflective: frame.lights.as_ref().and_then(|lights| lights.reflective),
         rsm: None,
+        volumes: None,
         vpl: None,
         slots: Vec::new(),
     };
@@ -74,6 +76,9 @@ pub(super) fn probe(
         let image = match settings.methods.diffuse {
             DiffuseMethod::Rsm if wanted.method.slot == Slot::Diffuse => {
                 Some(declared.rsm.insert(rsm::rsm(cx, &settings.rsm)).diffuse)
+            }
+            DiffuseMethod::Volumes if wanted.method.slot == Slot::Diffuse => {
+                Some(declared.volumes.insert(volumes::volumes(cx, &settings.volumes)).diffuse)
             }
             DiffuseMethod::Vpl if wanted.method.slot == Slot::Diffuse => {
                 Some(declared.vpl.insert(vpl::vpl(cx, &settings.vpl)).diffuse)

@@ -128,7 +128,12 @@ pub(crate) fn builtin(name: &str) -> Scene {
 
 /// The rsm technique at its default preset with these changes.
 pub(crate) fn settings(changes: &[(&str, &str)]) -> Settings {
-    let mut settings = Settings::new(Technique::Rsm, Preset::Default);
+    settings_of(Technique::Rsm, changes)
+}
+
+/// Any technique, likewise.
+pub(crate) fn settings_of(technique: Technique, changes: &[(&str, &str)]) -> Settings {
+    let mut settings = Settings::new(technique, Preset::Default);
     for (key, value) in changes {
         settings.set(key, value).expect("a setting and its value");
     }

@@ -69,9 +69,22 @@ impl<'f, 's> FrameCx<'f, 's> {
     }
 
     /// The scene as voxels; methods that ask alike share them.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the method that asks for voxels comes later"))]
     pub(crate) fn voxels(&mut self, settings: &VoxelSettings) -> Rc<Voxels> {
-        voxels(self.graph, self.frame, settings)
+        self.shared(*settings, |cx, settings| voxels(cx.graph, cx.frame, settings))
+    }
+
+    /// What several methods share: made where the first of them asks, once for each type and what it is made by.
+    pub(crate) fn shared<P: PartialEq + 'static, T: 'static>(
+        &mut self,
+        parameters: P,
+        make: impl FnOnce(&mut Self, &P) -> T,
+    ) -> Rc<T> {
+        if let Some(known) = self.frame.offers.find::<(P, Rc<T>)>(|(made_by, _)| *made_by == parameters) {
+            return known.1.clone();
+        }
+        let made = Rc::new(make(self, &parameters));
+        self.frame.offers.put((parameters, made.clone()));
+        made
     }
 
     /// The views from the lights, and what their texels reflect, for a method that takes them.

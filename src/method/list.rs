@@ -14,6 +14,7 @@ macro_rules! for_all_methods {
                 final_gather => FinalGather(FinalGatherOptions),
                 particles => Particles(ParticlesOptions),
                 rsm => Rsm(RsmOptions),
+                volumes => Volumes(VolumesOptions),
                 vpl => Vpl(VplOptions),
             }
             caustics {

@@ -11,8 +11,6 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use std::rc::Rc;
-
 use self::grid::VoxelGrid;
 use self::occupancy::{Occupancy, occupancy};
 pub(crate) use self::settings::{VoxelSettings, Voxelisation};
@@ -26,31 +24,19 @@ use crate::vulkan::SamplerKind;
 
 /// The voxels of a frame.
 pub(crate) struct Voxels {
-    settings: VoxelSettings,
     /// As passes bind them.
     pub(crate) group: groups::Voxels,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it"))]
     pub(crate) grid: VoxelGrid,
     /// Levels of opacity.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) opacity: ImageRef,
 }
 
-/// Those that were made in this frame.
-#[derive(Default)]
-struct Made(std::cell::RefCell<Vec<Rc<Voxels>>>);
-
-/// The voxels of the frame, made if nobody asked for them before.
-pub(crate) fn voxels(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, settings: &VoxelSettings) -> Rc<Voxels> {
-    let made = frame.offers.get::<Made>().unwrap_or_else(|| {
-        frame.offers.put(Made::default());
-        frame.offers.get::<Made>().expect("put just before")
-    });
-    let known = made.0.borrow().iter().find(|known| known.settings == *settings).cloned();
-    known.unwrap_or_else(|| {
-        let grid = VoxelGrid::around(frame.data, settings.resolution);
-        let voxels = Rc::new(declare(graph, (frame.data, frame.geometry), frame.time, grid, settings).0);
-        made.0.borrow_mut().push(voxels.clone());
-        voxels
-    })
+/// The voxels of the frame.
+pub(crate) fn voxels(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, settings: &VoxelSettings) -> Voxels {
+    let grid = VoxelGrid::around(frame.data, settings.resolution);
+    declare(graph, (frame.data, frame.geometry), frame.time, grid, settings).0
 }
 
 /// Declares the passes.
@@ -74,7 +60,7 @@ fn declare(
         voxels_skip_empty: u32::from(settings.skip_empty),
         voxels_cone_width: settings.cone_width,
     };
-    (Voxels { settings: *settings, group, grid, opacity }, occupied)
+    (Voxels { group, grid, opacity }, occupied)
 }
 
 /// The programs that make voxels with these settings, as a method lists them.

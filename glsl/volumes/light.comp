@@ -1,0 +1,12 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "volumes/visibility.glsl"
+#include "volumes/light.glsl"
+
+// The light of one cache (light.glsl), each group of lights seen by a ray, or wholly.
+
+layout(local_size_x = 64) in;
+
+void main() {
+    light_cache();
+}

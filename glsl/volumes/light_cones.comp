@@ -1,0 +1,12 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "volumes/cone_visibility.glsl"
+#include "volumes/light.glsl"
+
+// The light of one cache (light.glsl), each group of lights seen by a cone through voxels.
+
+layout(local_size_x = 64) in;
+
+void main() {
+    light_cache();
+}

@@ -1,0 +1,90 @@
+//! The light of all virtual area lights at all caches.
+
+use super::options::{VolumesOptions, VolumesVisibility};
+use super::rays::rays_of;
+use crate::frame::caches::{AreaLights, Caches};
+use crate::graph::bindings::BufferRef;
+use crate::method::FrameCx;
+use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
+
+/// Invocations of a cache, which share the groups of lights.
+const LANES: u32 = 64;
+/// Steps of an invocation's loops for each light, and for a ray to a group of them.
+const LIGHT_STEPS: u32 = 2;
+const RAY_STEPS: u32 = 341;
+
+/// Steps of a cone over voxels along one axis at most.
+const CONE_STEPS: u32 = 3;
+
+/// The kinds of glsl/volumes/visibility.glsl.
+fn kind_of(visibility: VolumesVisibility) -> u32 {
+    match visibility {
+        VolumesVisibility::None | VolumesVisibility::Cones => 0,
+        VolumesVisibility::Rays => 1,
+    }
+}
+
+/// Numbers that a cache holds (glsl/volumes/light.comp).
+fn numbers(bands: u32) -> usize {
+    if bands == 3 { 28 } else { 12 }
+}
+
+/// Groups that one pass may take.
+fn groups_at_once(lights: &AreaLights, options: &VolumesOptions, loop_steps: u32) -> u32 {
+    let seen = match options.visibility {
+        VolumesVisibility::None => 0,
+        VolumesVisibility::Rays => RAY_STEPS,
+        VolumesVisibility::Cones => CONE_STEPS * options.voxels,
+    };
+    let steps = LIGHT_STEPS * lights.group_lights + seen;
+    LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
+}
+
+/// Declares the passes; returns the numbers of all caches.
+pub(super) fn light(
+    cx: &mut FrameCx<'_, '_>,
+    lights: &AreaLights,
+    caches: &Caches,
+    options: &VolumesOptions,
+) -> BufferRef<f32> {
+    let (scene, rays) = rays_of(cx);
+    let voxels = (options.visibility == VolumesVisibility::Cones).then(|| cx.voxels(&options.voxel_settings()));
+    let graph = &mut *cx.graph;
+    let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);
+    let most = groups_at_once(lights, options, graph.traits().loop_steps);
+    for first in (0..lights.group_count.max(1)).step_by(most as usize) {
+        let into = if first == 0 { light.start_then_read() } else { light.read_write() };
+        let name = if first == 0 {
+            "diffuse/volumes/light".to_owned()
+        } else {
+            format!("diffuse/volumes/light-{}", first / most + 1)
+        };
+        let (first_group, capacity) = (first.cast_signed(), caches.capacity);
+        let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
+        let (area_lights, light_caches) = (lights.group.clone(), caches.group.clone());
+        if let Some(voxels) = &voxels {
+            let push = LightConesPush { rays, first_group, end_group, capacity };
+            let pass = LightCones {
+                voxels: voxels.group.clone(),
+                area_lights,
+                light_caches,
+                light: into,
+                bands: options.bands,
+                push,
+            };
+            graph.pass(&name, pass).threads_indirect(caches.head, 0);
+        } else {
+            let pass = Light {
+                scene_rays: scene.clone(),
+                area_lights,
+                light_caches,
+                light: into,
+                bands: options.bands,
+                visibility: kind_of(options.visibility),
+                push: LightPush { rays, first_group, end_group, capacity },
+            };
+            graph.pass(&name, pass).threads_indirect(caches.head, 0);
+        }
+    }
+    light
+}

@@ -1,0 +1,98 @@
+//! Radiance volumes against paths, and what stands when something moves.
+
+use glam::DVec3;
+
+use crate::gpu_tests::against_paths::{against_paths, leaks, passes_run};
+use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, request, settings_of, view};
+use crate::gpu_tests::session::Session;
+use crate::renderer::{FrameRequest, Slot, Technique, Timing};
+use crate::scene::{LightId, LightKind, Material, Scene};
+
+#[test]
+fn pictures_are_those_of_paths_of_one_bounce() {
+    let session = Session::open();
+    for (name, mean_bound, error_bound) in [
+        ("cornell-point", 0.03, 0.1),
+        ("cornell-spot", 0.05, 0.1),
+        ("cornell-panel", 0.08, 0.17),
+        ("corridor", 0.05, 0.1),
+    ] {
+        let scene = builtin(name);
+        let camera = scene.camera_view(None).expect("its camera");
+        let settings = settings_of(Technique::Volumes, &[]);
+        let (ratio, error) = against_paths(&session, &scene, camera, &settings, (256, Some(1)));
+        println!("{name}: mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < mean_bound && error < error_bound, "{name}: {ratio} {error}");
+    }
+}
+
+/// Rays from caches to lights, and from pixels to caches.
+#[test]
+fn rays_keep_light_out_of_dark_rooms() {
+    let session = Session::open();
+    let of = |visibility, weights| {
+        let changes = [("volumes.visibility", visibility), ("volumes.weights", weights)];
+        leaks(&session, &settings_of(Technique::Volumes, &changes), [32, 24])
+    };
+    let (none, rays, both) = (of("none", "trilinear"), of("rays", "trilinear"), of("rays", "rays"));
+    println!(
+        "of the lit hall's light: {none:?} without rays, {rays:?} with rays to lights, {both:?} with rays to caches too"
+    );
+    assert!(none.iter().all(|&leak| leak > 0.1), "{none:?}");
+    assert!(rays.iter().all(|&leak| leak < 1e-3), "{rays:?}");
+    assert!(both[1..].iter().zip(&rays[1..]).all(|(with, without)| *with < 0.01 * without), "{both:?} {rays:?}");
+}
+
+#[test]
+fn what_did_not_change_stands_and_repeats_are_the_same_bits() {
+    let session = Session::open();
+    let mut scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    let asked = |camera| FrameRequest { timing: Timing::Passes, ..request([512, 384], camera, &[Slot::Diffuse]) };
+    let ran = |frame: &_| [passes_run(frame, "caches"), passes_run(frame, "diffuse/volumes")].concat();
+    // So large that caches get other numbers each time.
+    let mut renderer = session.renderer(&settings_of(Technique::Volumes, &[("volumes.lights", "16")]));
+    let first = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    let again = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    assert!(ran(&again).is_empty(), "{:?}", ran(&again));
+    for _ in 0..3 {
+        renderer.invalidate();
+        let anew = renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+        assert!(!ran(&anew).is_empty(), "it is made anew");
+        assert_eq!(first.slots, anew.slots, "bit by bit");
+    }
+
+    let beside = view(DVec3::new(0.1, 1.0, 2.9), DVec3::new(0.0, 1.0, 0.0));
+    let moved = renderer.render(&scene, &asked(beside)).expect("a frame");
+    assert!(passes_run(&moved, "caches/lights").is_empty(), "{:?}", ran(&moved));
+    assert!(passes_run(&moved, "light-views").is_empty() && !passes_run(&moved, "caches/places").is_empty());
+
+    renderer.render(&scene, &asked(camera.clone())).expect("a frame");
+    let mut light = scene.lights()[0].clone();
+    light.intensity = light.intensity.map(|channel| 2.0 * channel);
+    scene.set_light(LightId(0), light).expect("a sound light");
+    let relit = renderer.render(&scene, &asked(camera)).expect("a frame");
+    assert!(
+        passes_run(&relit, "caches/places").is_empty(),
+        "caches stand where a light alone changes: {:?}",
+        ran(&relit)
+    );
+    assert!(!passes_run(&relit, "caches/lights").is_empty() && !passes_run(&relit, "diffuse/volumes").is_empty());
+}
+
+#[test]
+fn scenes_without_need_pay_nothing() {
+    let session = Session::open();
+    let reason = |scene: &Scene| {
+        let camera = view(DVec3::new(0.7, 0.6, 0.8), DVec3::ZERO);
+        let frame =
+            session.render(scene, &settings_of(Technique::Volumes, &[]), &request([8, 8], camera, &[Slot::Diffuse]));
+        assert!(passes_run(&frame, "caches").is_empty());
+        let row = frame.timings.passes.into_iter().find(|pass| pass.full_name().starts_with("diffuse/volumes"));
+        row.and_then(|row| row.skipped).expect("a reason")
+    };
+    assert_eq!(reason(&closed_box(1.0, lambert([0.5; 3]))), "no light");
+    let mut metal = closed_box(1.0, Material { metallic: 1.0, ..lambert([0.5; 3]) });
+    add_light(&mut metal, LightKind::Point, DVec3::ZERO, DVec3::NEG_Y, [1.0; 3]);
+    assert_eq!(reason(&metal), "no diffuse surface");
+}

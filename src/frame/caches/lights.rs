@@ -1,0 +1,118 @@
+//! Virtual area lights: the light views, reduced block by block (Reich 2015, section 4.3.1), without blocks that reflect nothing, in groups that share a visibility.
+
+use ash::vk;
+
+use crate::frame::light_set::LightSet;
+use crate::frame::light_views::LightViews;
+use crate::frame::view_layout::LaidOutView;
+use crate::graph::bindings::BufferRef;
+use crate::graph::{Dependence, Graph};
+use crate::shaders::caches::{GatherGroups, GatherGroupsPush, Reduce, ReducePush, Scan, ScanPush};
+use crate::shaders::{groups, types};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
+
+/// What is asked of the lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LightRule {
+    /// The side of a square with as many lights as all views are reduced to, or nearly so.
+    pub(crate) side: u32,
+    /// Groups are of 4^lod lights.
+    pub(crate) lod: u32,
+    /// The area in the disc form is the paper's.
+    pub(crate) paper: bool,
+}
+
+/// The lights of a frame.
+pub(crate) struct AreaLights {
+    pub(crate) group: groups::AreaLights,
+    /// Groups at most; lights are at most 4^lod times as many.
+    pub(crate) group_count: u32,
+    /// Lights of a group at most.
+    pub(crate) group_lights: u32,
+    /// Two texels each (glsl/lib/vpl.glsl).
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) lights: BufferRef<[f32; 4]>,
+    /// How many lights, how many groups.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) counts: BufferRef<u32>,
+}
+
+/// Declares the passes.
+pub(crate) fn area_lights(graph: &mut Graph<'_>, set: &LightSet, views: &LightViews, rule: &LightRule) -> AreaLights {
+    let side = block_side(&set.atlas.views, rule.side);
+    let (slot_views, slot_count) = slots_of(&set.atlas.views, side, rule.lod);
+    let group_lights = 1 << (2 * rule.lod);
+    let group_count = slot_count / group_lights;
+    let slot_views = graph.upload("caches.slot_views", &slot_views, Dependence::LIGHTS);
+    let slots = graph.buffer::<[f32; 4]>("caches.slots", 2 * slot_count as usize);
+    let dropped = graph.buffer::<u32>("caches.dropped", 1);
+    graph.fill_buffer("caches/lights/clear-dropped", dropped, 0);
+    let pass = Reduce {
+        light_views: views.group.clone(),
+        slot_views: slot_views.read(),
+        slots: slots.write(),
+        dropped_texels: dropped.read_write(),
+        paper: u32::from(rule.paper),
+        push: ReducePush { slot_count, view_count: slot_views.count() as u32, side: side.cast_signed() },
+    };
+    let pass = graph.pass("caches/lights/reduce", pass).note("texels a light", u64::from(side * side));
+    pass.count("dropped", dropped, 0).threads([slot_count, 1, 1]);
+
+    let offsets = graph.buffer::<[u32; 2]>("caches.offsets", group_count as usize + 1);
+    let counts = graph.buffer::<u32>("caches.light_counts", 2);
+    let pass = Scan {
+        slots: slots.texels(FLOATS),
+        offsets: offsets.write(),
+        counts: counts.write(),
+        push: ScanPush { group_count, group_slots: group_lights },
+    };
+    let pass = graph.pass("caches/lights/scan", pass).count("lights", counts, 0).count("groups", counts, 1);
+    pass.groups([1, 1, 1]);
+
+    let lights = graph.buffer::<[f32; 4]>("caches.lights", 2 * slot_count as usize);
+    let lists = graph.buffer::<[u32; 4]>("caches.light_groups", 2 * group_count as usize);
+    let pass = GatherGroups {
+        slots: slots.texels(FLOATS),
+        offsets: offsets.texels(vk::Format::R32G32_UINT),
+        lights: lights.start(),
+        groups: lists.start(),
+        push: GatherGroupsPush { group_count, group_slots: group_lights },
+    };
+    graph.pass("caches/lights/groups", pass).threads([group_count, 1, 1]);
+    let group = groups::AreaLights {
+        area_lights: lights.texels(FLOATS),
+        area_light_groups: lists.texels(WORDS),
+        area_light_counts: counts.texels(vk::Format::R32_UINT),
+    };
+    AreaLights { group, group_count, group_lights, lights, counts }
+}
+
+/// Columns and rows of blocks of a view.
+fn blocks_of(view: &LaidOutView, side: u32) -> [u32; 2] {
+    view.record.rect_size.map(|texels| texels.cast_unsigned().div_ceil(side))
+}
+
+/// The side of a block of texels, a power of two: the one with which the number of all blocks is nearest to `wanted`², as a ratio.
+fn block_side(views: &[LaidOutView], wanted: u32) -> u32 {
+    let wanted = f64::from(wanted).powi(2);
+    let blocks = |side: u32| -> f64 {
+        views.iter().map(|view| blocks_of(view, side).iter().map(|&count| f64::from(count)).product::<f64>()).sum()
+    };
+    let off = |side: u32| (blocks(side).max(1.0) / wanted).ln().abs();
+    (0..12).map(|order| 1 << order).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(1)
+}
+
+/// The first slot of each view, and how many slots there are; each view's are a multiple of 4^lod.
+fn slots_of(views: &[LaidOutView], side: u32, lod: u32) -> (Vec<types::SlotView>, u32) {
+    let mut next = 0;
+    let place = |(index, view): (u32, &LaidOutView)| {
+        let longest = blocks_of(view, side).into_iter().max().unwrap_or(1);
+        let first = next;
+        next += longest.next_power_of_two().max(1 << lod).pow(2);
+        types::SlotView { first, view: index }
+    };
+    let places = (0..).zip(views).map(place).collect();
+    (places, next)
+}
