@@ -112,7 +112,7 @@ options! {
     /// With `visibility=cones` the width of a cone's samples over its own.
     cone_width: f64 = 0.5, paper = 1.0; OptionKind::Number(0.125, 1.0), "", "falls";
     /// Where caches lie.
-    placement: VolumesPlacement = VolumesPlacement::Visible, paper = VolumesPlacement::Grid; OptionKind::Choice(VolumesPlacement::NAMES), "", "";
+    placement: VolumesPlacement = VolumesPlacement::Visible; OptionKind::Choice(VolumesPlacement::NAMES), "", "";
     /// What caches count by, beside their distances, for a pixel between them.
     weights: VolumesWeights = VolumesWeights::Trilinear, high = VolumesWeights::Rays; OptionKind::Choice(VolumesWeights::NAMES), "", "";
     /// What the area of a virtual area light adds to the squared distance.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::gpu_tests::against_paths::{against_paths, leaks, passes_run};
 use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, request, settings_of, view};
 use crate::gpu_tests::session::Session;
-use crate::renderer::{FrameRequest, Slot, Technique, Timing};
+use crate::renderer::{FrameRequest, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{LightId, LightKind, Material, Scene};
 
 #[test]
@@ -24,6 +24,57 @@ fn pictures_are_those_of_paths_of_one_bounce() {
         println!("{name}: mean {ratio:.3}, blocks {error:.3}");
         assert!((ratio - 1.0).abs() < mean_bound && error < error_bound, "{name}: {ratio} {error}");
     }
+}
+
+/// Cones through voxels see what rays do, but for what is thinner than a voxel or beside a cache.
+#[test]
+fn cones_show_about_what_rays_do() {
+    let session = Session::open();
+    for (name, changes, mean_bound, error_bound) in [
+        ("cornell-point", &[("volumes.visibility", "cones")][..], 0.09, 0.12),
+        (
+            "cornell-point",
+            &[("volumes.visibility", "cones"), ("volumes.lod", "2"), ("volumes.empty", "march")],
+            0.09,
+            0.12,
+        ),
+        ("corridor", &[("volumes.visibility", "cones"), ("volumes.occluders", "solids")], 0.12, 0.16),
+    ] {
+        let scene = builtin(name);
+        let camera = scene.camera_view(None).expect("its camera");
+        let settings = settings_of(Technique::Volumes, changes);
+        let (ratio, error) = against_paths(&session, &scene, camera, &settings, (256, Some(1)));
+        println!("{name}, {changes:?}: mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < mean_bound && error < error_bound, "{name}: {ratio} {error}");
+    }
+    let leaked = leaks(&session, &settings_of(Technique::Volumes, &[("volumes.visibility", "cones")]), [32, 24]);
+    println!("of the lit hall's light: {leaked:?}");
+    assert!(leaked.iter().all(|&leak| leak < 0.1), "{leaked:?}");
+}
+
+#[test]
+fn the_thesis_settings_are_within_its_error() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    let settings = Settings::new(Technique::Volumes, Preset::Paper);
+    let (ratio, error) = against_paths(&session, &scene, camera, &settings, (256, Some(1)));
+    println!("mean {ratio:.3}, blocks {error:.3}");
+    assert!((ratio - 1.0).abs() < 0.08 && error < 0.2, "{ratio} {error}");
+}
+
+#[test]
+fn who_sees_by_rays_does_not_pay_for_voxels() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("its camera");
+    let asked = FrameRequest { timing: Timing::Passes, ..request([64, 48], camera, &[Slot::Diffuse]) };
+    let voxels = |visibility| {
+        let settings = settings_of(Technique::Volumes, &[("volumes.visibility", visibility)]);
+        passes_run(&session.render(&scene, &settings, &asked), "voxels").len()
+    };
+    assert_eq!((voxels("none"), voxels("rays")), (0, 0));
+    assert!(voxels("cones") > 5);
 }
 
 /// Rays from caches to lights, and from pixels to caches.
