@@ -61,6 +61,8 @@ fn the_grids_that_are_checked_in_are_sound() {
         ("chang", 36),
         ("particles-growth", 44),
         ("particles-growth-scenes", 14),
+        ("reich", 50),
+        ("reich-pixels", 3),
     ];
     for (name, count) in counts {
         let path = format!("sweeps/{name}.toml");
