@@ -8,14 +8,12 @@
 #include "lib/bvh.glsl"
 #include "volumes/rays.glsl"
 
-const uint VISIBILITY_NONE = 0u;
-const uint VISIBILITY_RAYS = 1u;
-
-layout(constant_id = 1) const uint VISIBILITY = VISIBILITY_NONE;
+// 1: by a ray; 0: it sees all.
+layout(constant_id = 1) const uint TRACES = 0u;
 
 // `middle`: the light that a ray is sent to.
 float visibility_of_group(VolumeRays rays, LightGroup group, Vpl middle, vec3 position_rs) {
-    if (VISIBILITY == VISIBILITY_RAYS) {
+    if (TRACES != 0u) {
         vec3 way = lifted_vpl(middle) - position_rs;
         return is_occluded(position_rs + rays.shift, way, 1.0) ? 0.0 : 1.0;
     }

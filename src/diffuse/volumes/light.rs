@@ -16,14 +16,6 @@ const RAY_STEPS: u32 = 341;
 /// Steps of a cone over voxels along one axis at most.
 const CONE_STEPS: u32 = 3;
 
-/// The kinds of glsl/volumes/visibility.glsl.
-fn kind_of(visibility: VolumesVisibility) -> u32 {
-    match visibility {
-        VolumesVisibility::None | VolumesVisibility::Cones => 0,
-        VolumesVisibility::Rays => 1,
-    }
-}
-
 /// Numbers that a cache holds (glsl/volumes/light.comp).
 fn numbers(bands: u32) -> usize {
     if bands == 3 { 28 } else { 12 }
@@ -80,7 +72,7 @@ pub(super) fn light(
                 light_caches,
                 light: into,
                 bands: options.bands,
-                visibility: kind_of(options.visibility),
+                traces: u32::from(options.visibility == VolumesVisibility::Rays),
                 push: LightPush { rays, first_group, end_group, capacity },
             };
             graph.pass(&name, pass).threads_indirect(caches.head, 0);
