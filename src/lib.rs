@@ -1,6 +1,9 @@
 //! irradia: a headless Vulkan engine for global illumination.
 
+#[cfg(feature = "plots")]
 pub mod bench;
+#[cfg(feature = "capi")]
+pub mod capi;
 pub mod image;
 pub mod metrics;
 pub mod output;

@@ -64,7 +64,9 @@ impl Samples {
 
 /// What an estimator works with.
 pub(crate) struct Work {
-    pub(super) store: Store,
+    pub(crate) store: Store,
+    /// Share of the frame that the samples asked for now begin and end at.
+    pub(crate) span: [f64; 2],
     pub(super) scene: Option<Arc<TracedScene>>,
     pub(super) timing: Timing,
     pub(super) cost: TraceCost,
@@ -72,7 +74,8 @@ pub(crate) struct Work {
 
 impl Work {
     pub(super) fn new(pipelines: &Arc<Pipelines>) -> Result<Work, VulkanError> {
-        Ok(Work { store: Store::new(pipelines)?, scene: None, timing: Timing::Frame, cost: TraceCost::default() })
+        let (store, span, cost) = (Store::new(pipelines)?, [0.0, 1.0], TraceCost::default());
+        Ok(Work { store, span, scene: None, timing: Timing::Frame, cost })
     }
 
     /// Takes down what a submission cost that advanced paths. How many go on.
@@ -81,13 +84,19 @@ impl Work {
         self.cost.add_step(executed, totals)
     }
 
+    /// Takes down how much of the samples asked for is done, 0 to 1.
+    pub(super) fn reached(&mut self, part: f64) {
+        let [from, to] = self.span;
+        self.store.interrupt.done = from + (to - from) * part;
+    }
+
     pub(super) fn scene(&self) -> Arc<TracedScene> {
         self.scene.clone().expect("set before anything is asked for")
     }
 }
 
 /// An estimator at work on a device.
-pub(crate) trait Estimating {
+pub(crate) trait Estimating: Send {
     fn work(&mut self) -> &mut Work;
 
     /// Works on this scene from now on.

@@ -31,6 +31,9 @@ pub(crate) struct PathTracer {
     work: Work,
 }
 
+/// Of the time that samples take, about, where lights send out paths too.
+const CAMERA_SHARE: f64 = 0.5;
+
 impl PathTracer {
     pub(crate) fn new(pipelines: &Arc<Pipelines>) -> Result<PathTracer, VulkanError> {
         Ok(PathTracer { work: Work::new(pipelines)? })
@@ -131,6 +134,10 @@ impl PathTracer {
                 texels = bytemuck::pod_collect_to_vec(&executed.take(read_back));
             }
             self.work.cost.add(executed);
+            let samples = f64::from(done + wave.sample_count) / f64::from(count);
+            let blocks = view.size[0].div_ceil(8) * view.size[1].div_ceil(8);
+            let part = (f64::from(first_block) + f64::from(block_count) * samples) / f64::from(blocks);
+            self.work.reached(part * if scene.needs_light_paths(view.bounces) { CAMERA_SHARE } else { 1.0 });
         }
         Ok(texels)
     }
@@ -148,6 +155,8 @@ impl PathTracer {
         let all = view.light_path_count();
         let capacity = capacity(&scene, view, count);
         for sample in first..first + count {
+            let part = f64::from(sample - first) / f64::from(count);
+            self.work.reached(CAMERA_SHARE + (1.0 - CAMERA_SHARE) * part);
             for first_path in (0..all).step_by(capacity as usize) {
                 let swarm = Swarm {
                     first_path: first_path as u32,

@@ -110,6 +110,9 @@ impl Mapping<'_> {
             let seed = seed_of_half(self.view.seed, half);
             for sample in first..first + count {
                 let wave = Wave { first_block, block_count, sample_count: 1, first_sample: sample, seed };
+                let samples = f64::from(sample - first) / f64::from(count);
+                let part = (f64::from(first_block) + f64::from(block_count) * samples) / f64::from(blocks);
+                self.work.reached(part);
                 let radius =
                     radius_of_pass(first_radius(self.scene, &self.view), 2 * u64::from(sample) + u64::from(half) + 1);
                 let disc = Disc { radius: radius as f32, scale: scale_of(self.scene) };

@@ -75,7 +75,7 @@ impl SceneData {
         scene: &Scene,
     ) -> Result<SceneData, VulkanError> {
         let revisions = scene.revisions();
-        let mesh_key = hash_of(&(scene.identity(), scene.meshes().len()));
+        let mesh_key = hash_of(&(scene.identity(), revisions.meshes));
         let material_key = hash_of(&(scene.identity(), revisions.materials));
         let Extent { origin, middle, radius } = scene.extent();
         let place = origin.to_array().map(f64::to_bits);

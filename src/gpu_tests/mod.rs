@@ -21,6 +21,7 @@ mod graph;
 mod graph_mistakes;
 mod graph_places;
 mod groups;
+mod host_changes;
 mod hybrid;
 mod invariance;
 mod kept;

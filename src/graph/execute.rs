@@ -85,6 +85,7 @@ impl Graph<'_> {
         if let Some(mistake) = self.mistake.take() {
             return Err(VulkanError::Declaration(mistake));
         }
+        self.store.interrupt.check()?;
         let advancing = self.advancing(verdicts);
         self.swap_histories(&advancing);
         let result = self.execute(verdicts, timing);

@@ -23,6 +23,7 @@ pub(crate) mod demand;
 mod dependence;
 mod describe;
 mod execute;
+mod interrupt;
 #[cfg_attr(not(test), allow(dead_code, reason = "tests keep something; the methods that do so come later"))]
 pub(crate) mod kept;
 mod key;
@@ -46,9 +47,13 @@ pub(crate) use declare::{Graph, Output};
 pub(crate) use dependence::Dependence;
 pub use describe::GraphDescription;
 pub(crate) use execute::{Executed, Outgrown};
+pub(crate) use interrupt::Interrupt;
+pub use interrupt::{Cancel, Progress};
 pub(crate) use key::hash_of;
 pub(crate) use pass::{ClearColor, DrawCall, DrawGroup, DrawList};
-pub(crate) use piece::{joined, levels, lies_in};
+#[cfg(feature = "plots")]
+pub(crate) use piece::joined;
+pub(crate) use piece::{levels, lies_in};
 pub(crate) use resource::ReadBack;
 pub(crate) use store::Store;
 pub use timing::{FrameTimings, PassTiming, Timing};

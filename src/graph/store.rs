@@ -7,6 +7,7 @@ use ash::vk;
 
 use super::barriers::State;
 use super::resource::{Body, Resource};
+use super::interrupt::Interrupt;
 use crate::vulkan::{Buffer, Device, Image, ImageInfo, Location, Pipelines, Queries, Recorder, VulkanError};
 
 pub(super) struct StoredImage {
@@ -46,6 +47,7 @@ pub(crate) struct Store {
     pub(super) grown: HashMap<String, usize>,
     /// What outlasts frames, by name.
     pub(super) kept: HashMap<String, Kept>,
+    pub(crate) interrupt: Interrupt,
     /// What passes that ran made of programs and formats.
     #[cfg(test)]
     pub(crate) uses: Vec<super::uses::ProgramUse>,
@@ -83,6 +85,7 @@ impl Store {
             read_back: None,
             grown: HashMap::new(),
             kept: HashMap::new(),
+            interrupt: Interrupt::default(),
             #[cfg(test)]
             uses: Vec::new(),
         })

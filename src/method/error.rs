@@ -15,6 +15,9 @@ pub enum Error {
     /// The time between two frames is no time.
     #[error("a frame {0} s after the one before cannot be made; give a time step of zero or more seconds")]
     TimeStep(f32),
+    /// The camera cannot be looked through.
+    #[error("no frame can be made through this camera: {0}")]
+    Camera(String),
     /// An option is out of its range.
     #[error("{0}")]
     Settings(String),

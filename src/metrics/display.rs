@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::image::{Adaptation, ColorImage, ToneMap, quantize, tone_map_pixels};
+#[cfg(feature = "flip")]
+use crate::image::quantize;
+use crate::image::{Adaptation, ColorImage, ToneMap, tone_map_pixels};
 
 /// Weights of Rec.709's luma, a weighted sum of encoded values.
 const LUMA_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -34,6 +36,7 @@ pub(super) fn luma(pixels: &[[f32; 3]]) -> Vec<f64> {
 }
 
 /// Display values as a screen shows them, in 256 levels, three bytes a pixel.
+#[cfg(feature = "flip")]
 pub(super) fn levels(pixels: &[[f32; 3]]) -> Vec<u8> {
     pixels.as_flattened().iter().copied().map(quantize).collect()
 }

@@ -23,7 +23,9 @@
 mod blocks;
 mod display;
 mod error;
+#[cfg(feature = "flip")]
 mod flip;
+#[cfg(feature = "flip")]
 mod heat_map;
 mod infinity;
 mod radiance;
@@ -34,6 +36,7 @@ use serde::{Deserialize, Serialize};
 pub use self::blocks::BLOCK_SIDE;
 pub(crate) use self::blocks::block_rms;
 pub use self::error::{MetricsError, Side};
+#[cfg(feature = "flip")]
 pub use self::heat_map::{HEAT_MAP_RANGE, HeatMap, heat_map};
 pub use self::radiance::{RadianceErrors, radiance_errors, rmse};
 use crate::image::ColorImage;
@@ -58,6 +61,7 @@ pub struct ImageErrors {
     /// Structural similarity of the luma of the display values, −1 to 1; 1 for the same image.
     pub ssim: f64,
     /// Mean FLIP of the display values, 0 to 1; 0 for the same image.
+    #[cfg(feature = "flip")]
     pub flip: f64,
     /// Mean luminance of the image over that of the reference; 1 if both are black, infinite if the reference alone is.
     #[serde(with = "infinity")]
@@ -89,6 +93,7 @@ pub fn compare(image: &ColorImage, reference: &ColorImage) -> Result<Comparison,
         relmse,
         psnr: display::psnr(&shown),
         ssim: ssim::ssim(size, &shown),
+        #[cfg(feature = "flip")]
         flip: flip::mean_flip(size, &shown),
         mean_ratio,
     };

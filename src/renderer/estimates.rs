@@ -7,7 +7,7 @@ use super::frame::Estimate;
 use super::methods::EstimatorEntry;
 use crate::estimator::{EstimateRequest, Estimating, Noise, Samples, SlotSums, TraceCost};
 use crate::frame::rays::TracedScene;
-use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing, hash_of};
+use crate::graph::{FrameTimings, GraphDescription, Interrupt, PassTiming, Timing, hash_of};
 use crate::slot::{IMAGE, Slot};
 use crate::vulkan::{Pipelines, VulkanError};
 
@@ -46,7 +46,7 @@ impl Estimates {
         held: Option<Estimates>,
         entry: &EstimatorEntry,
         pipelines: &Arc<Pipelines>,
-        scene: Arc<TracedScene>,
+        (scene, interrupt): (Arc<TracedScene>, Interrupt),
     ) -> Result<Estimates, VulkanError> {
         let held = held.filter(|held| held.name == entry.name);
         let made = || {
@@ -58,6 +58,7 @@ impl Estimates {
         };
         let mut estimates = held.map_or_else(made, Ok)?;
         estimates.running.set_scene(scene);
+        estimates.running.work().store.interrupt = interrupt;
         Ok(estimates)
     }
 
@@ -115,7 +116,10 @@ fn mean_of_samples(
     key: u64,
 ) -> Result<Means, VulkanError> {
     let (a, b) = (spp.div_ceil(2), spp / 2);
+    let share = f64::from(a) / f64::from(spp);
+    running.work().span = [0.0, share];
     let first = running.add_up(request, 0, 0, a)?;
+    running.work().span = [share, 1.0];
     let mut estimate = Estimate { spp, ..Estimate::default() };
     let halves: Vec<SlotSums> = if b > 0 { vec![first, running.add_up(request, 1, 0, b)?] } else { vec![first] };
     let mut slots: BTreeMap<Slot, Vec<[f32; 3]>> = BTreeMap::new();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::estimator::Noise;
-use crate::graph::{FrameTimings, Timing};
+use crate::graph::{FrameTimings, Progress, Timing};
 use crate::image::{ColorImage, ToneMap};
 use crate::scene::CameraView;
 use crate::slot::Slot;
@@ -33,6 +33,8 @@ pub struct FrameRequest {
     /// Whether the images are copied to the host; without it the frame is made and timed, and its images stay
     /// on the device.
     pub read_back: bool,
+    /// Hears how far the frame is, and may stop it.
+    pub progress: Option<Progress>,
 }
 
 impl FrameRequest {
@@ -48,6 +50,7 @@ impl FrameRequest {
             tonemap: None,
             timing: Timing::Frame,
             read_back: true,
+            progress: None,
         }
     }
 

@@ -39,7 +39,7 @@ pub use repeat::{RepeatError, Repetition, check_piece};
 pub use settings::{Settings, SettingsError, options};
 pub use technique::{Technique, UnknownTechnique};
 
-pub use crate::graph::{FrameTimings, GraphDescription, PassTiming, Timing};
+pub use crate::graph::{Cancel, FrameTimings, GraphDescription, PassTiming, Progress, Timing};
 pub use crate::image::{ColorImage, ToneMap};
 pub use crate::method::{Error, OptionFault, OptionInfo, OptionKind, Options, Preset, UnknownPreset};
 pub use crate::slot::Slot;

@@ -15,7 +15,7 @@ use crate::frame::check::check_images;
 use crate::frame::light_set::LightSet;
 use crate::frame::rays::{TracedScene, surfaces_key, traced_key};
 use crate::frame::scene_data::SceneData;
-use crate::graph::{FrameTimings, Graph, GraphDescription, Outgrown, Store, hash_of};
+use crate::graph::{Cancel, FrameTimings, Graph, GraphDescription, Outgrown, Store, hash_of};
 use crate::image::ColorImage;
 use crate::method::{Error, Rays};
 use crate::scene::Scene;
@@ -55,6 +55,11 @@ impl Renderer {
         &self.settings
     }
 
+    /// Stops a frame that this renderer makes, from another thread.
+    pub fn cancel(&self) -> Cancel {
+        self.store.interrupt.cancel.clone()
+    }
+
     /// Replaces the settings.
     ///
     /// # Errors
@@ -83,13 +88,16 @@ impl Renderer {
     /// with a larger one.
     ///
     /// # Errors
-    /// A frame without pixels or beyond the device's limits, a time step that is none, exhausted memory, a lost device. The last two name the last
-    /// pass that finished.
+    /// A frame without pixels or beyond the device's limits, a camera or a time step that is none, exhausted memory, a lost device; these two name the last
+    /// pass that finished. A frame that was cancelled.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_request(request)?;
+        self.store.interrupt.progress = request.progress.clone();
         let start = Instant::now();
         let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
         let means = self.estimate(scene, request, &mut timings)?;
+        // Samples are all there is to it, or else a frame is done at once.
+        self.store.interrupt.done = if means.is_some() { 1.0 } else { 0.0 };
         loop {
             let Drawn { mut frame, outgrown, fault } = self.draw_once(scene, request, means.as_deref())?;
             if outgrown.is_empty() {
@@ -117,7 +125,8 @@ impl Renderer {
     /// The estimator at work on the scene as it is now.
     fn estimates(&mut self, entry: &EstimatorEntry, scene: &Scene) -> Result<&mut Estimates, Error> {
         let (pipelines, traced) = (self.store.pipelines().clone(), self.traced_scene(scene)?);
-        let estimates = Estimates::update(self.estimates.take(), entry, &pipelines, traced)?;
+        let interrupt = self.store.interrupt.clone();
+        let estimates = Estimates::update(self.estimates.take(), entry, &pipelines, (traced, interrupt))?;
         Ok(self.estimates.insert(estimates))
     }
 
@@ -224,6 +233,9 @@ impl Renderer {
         let [width, height] = request.size;
         if width == 0 || height == 0 {
             return Err(Error::EmptyFrame(width, height));
+        }
+        if let Some(fault) = request.camera.fault() {
+            return Err(Error::Camera(fault));
         }
         if !(request.time_step.is_finite() && request.time_step >= 0.0) {
             return Err(Error::TimeStep(request.time_step));

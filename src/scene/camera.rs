@@ -41,7 +41,13 @@ pub enum Projection {
 impl Camera {
     /// Says which number of the projection is out of range, if any is.
     pub(super) fn fault(&self) -> Option<String> {
-        let fault = match self.projection {
+        self.projection.fault()
+    }
+}
+
+impl Projection {
+    fn fault(&self) -> Option<String> {
+        let fault = match *self {
             Projection::Perspective { vertical_fov, aspect, near } => {
                 if !(vertical_fov > 0.0 && vertical_fov < PI) {
                     format!("its vertical angle of {vertical_fov} rad is not between 0 and π")
@@ -83,6 +89,14 @@ pub struct CameraView {
 }
 
 impl CameraView {
+    /// Says what keeps a picture from being taken through it, if anything does.
+    pub(crate) fn fault(&self) -> Option<String> {
+        if !self.world.is_finite() {
+            return Some("its place has a number that is not finite".to_owned());
+        }
+        self.projection.fault()
+    }
+
     /// A view from `eye` towards `target`.
     pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, projection: Projection) -> CameraView {
         let back = (eye - target).try_normalize().unwrap_or(DVec3::Z);

@@ -66,6 +66,7 @@ pub use camera::{Camera, CameraView, Projection};
 pub use emitters::EmitterSample;
 pub use error::SceneError;
 pub use facts::Facts;
+pub use gltf::ReadFile;
 pub use ids::{CameraId, LightId, MaterialId, MeshId, NodeId, TextureId};
 pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
 pub use load_options::LoadOptions;

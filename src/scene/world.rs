@@ -42,6 +42,8 @@ pub struct Node {
 pub struct Revisions {
     /// Meshes and where they stand.
     pub geometry: u64,
+    /// Meshes alone: their vertices and triangles. Counted in `geometry` too.
+    pub meshes: u64,
     /// Materials and textures.
     pub materials: u64,
     /// Punctual lights, emissive surfaces (their radiance and where they stand), the sky.
@@ -298,6 +300,18 @@ impl Scene {
         self.move_nodes(&[(node, local)])
     }
 
+    /// Moves nodes while the scene is being watched, as an animation does: where render space has its zero and how large the scene counts stay as they were when it
+    /// was first shown, so that what did not move need not be made again.
+    ///
+    /// # Errors
+    /// As [`Scene::set_local_transform`]; nothing moves then.
+    pub fn animate(&mut self, locals: &[(NodeId, DAffine3)]) -> Result<(), SceneError> {
+        for (node, _) in locals {
+            self.check("node", node.0, self.nodes.len())?;
+        }
+        self.move_nodes(locals)
+    }
+
     fn move_nodes(&mut self, locals: &[(NodeId, DAffine3)]) -> Result<(), SceneError> {
         let changed: Vec<_> = locals.iter().copied().filter(|&(id, local)| self.nodes[id.0].local != local).collect();
         let mut moved: Vec<NodeId> = changed.iter().map(|&(id, _)| id).collect();
@@ -396,6 +410,12 @@ impl Scene {
         if geometry != 0 {
             self.bounds = OnceLock::new();
         }
+    }
+
+    /// Forgets where the scene is and how far it reaches.
+    pub(super) fn forget_bounds(&mut self) {
+        self.bounds = OnceLock::new();
+        self.extent = OnceLock::new();
     }
 
     fn compose(&self, node: &Node) -> Result<DAffine3, SceneError> {

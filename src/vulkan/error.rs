@@ -90,6 +90,9 @@ pub enum VulkanError {
     /// A shader of the folder that `IRRADIA_SHADERS` names, in a debug build, cannot be used.
     #[error("{0}")]
     Shader(String),
+    /// Somebody who watches the frame stopped it.
+    #[error("the frame was cancelled")]
+    Cancelled,
     /// Any other failed call.
     #[error("the Vulkan call {call} failed: {result}")]
     Call {

@@ -7,6 +7,8 @@ mod gltf_file;
 mod gltf_materials;
 mod gltf_meshes;
 mod gltf_scenes;
+mod header;
+mod hosts;
 mod house;
 mod light_notation;
 #[cfg(debug_assertions)]

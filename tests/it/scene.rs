@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use irradia::scene::{
-    Alpha, Bounds, Camera, EmitterSample, Light, LightKind, Material, MaterialId, Mesh, Node, NodeId, Primitive,
-    Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef, Wrap,
+    Alpha, Bounds, Camera, EmitterSample, Light, LightKind, LoadOptions, Material, MaterialId, Mesh, MeshId, Node,
+    NodeId, Primitive, Projection, Revisions, Scene, SceneError, Texture, TextureId, TextureRef, Wrap,
 };
 use std::f64::consts::PI;
 
@@ -438,4 +438,62 @@ fn objects_are_seen_from_outside() {
 #[test]
 fn an_empty_scene_has_a_view() {
     automatic_view(&Scene::empty("nothing"));
+}
+
+#[test]
+fn a_mesh_that_is_replaced_counts_as_geometry_and_where_it_shines_as_light() {
+    let mut scene = two_squares(glow());
+    let (matt, glowing) = (scene.meshes()[0].clone(), scene.meshes()[1].clone());
+    let raised = |mesh: &Mesh| {
+        let mut mesh = mesh.clone();
+        mesh.primitives[0].positions.iter_mut().for_each(|position| position[2] += 3.0);
+        mesh
+    };
+    let before = scene.revisions();
+    scene.set_mesh(MeshId(0), raised(&matt)).expect("it is sound");
+    assert_eq!(changed(before, scene.revisions()), [true, false, false, false]);
+    assert_ne!(before.meshes, scene.revisions().meshes);
+    assert_eq!(scene.bounds().expect("triangles").max.z, 3.0);
+    let before = scene.revisions();
+    scene.set_mesh(MeshId(1), raised(&glowing)).expect("it is sound");
+    assert_eq!(changed(before, scene.revisions()), [true, false, true, false]);
+    let before = scene.revisions();
+    let two = Mesh { primitives: [matt.primitives.clone(), matt.primitives.clone()].concat(), ..Mesh::default() };
+    assert!(matches!(scene.set_mesh(MeshId(0), two), Err(SceneError::InvalidObject { .. })));
+    let mut endless = matt.clone();
+    endless.primitives[0].positions[0][0] = f32::INFINITY;
+    assert!(scene.set_mesh(MeshId(0), endless).is_err());
+    assert!(matches!(scene.set_mesh(MeshId(2), matt), Err(SceneError::UnknownId { kind: "mesh", .. })));
+    assert_eq!(before, scene.revisions(), "what is refused changes nothing");
+}
+
+#[test]
+fn nodes_are_animated_together_or_not_at_all() {
+    let mut scene = two_squares(Material::default());
+    let up = |height: f64| DAffine3::from_translation(DVec3::new(0.0, height, 0.0));
+    scene.animate(&[(NodeId(0), up(1.0)), (NodeId(1), up(2.0))]).expect("two nodes");
+    assert_eq!([0, 1].map(|node| scene.world_transform(NodeId(node)).translation.y), [1.0, 2.0]);
+    let before = scene.revisions();
+    assert!(scene.animate(&[(NodeId(0), up(5.0)), (NodeId(7), up(5.0))]).is_err());
+    assert!(scene.animate(&[(NodeId(0), up(5.0)), (NodeId(1), up(f64::NAN))]).is_err());
+    assert_eq!(scene.world_transform(NodeId(0)).translation.y, 1.0);
+    assert_eq!(before, scene.revisions());
+}
+
+#[test]
+fn files_of_a_scene_may_come_from_the_caller() {
+    let json = br#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "../a%20file.bin"}]}"#;
+    let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|axis| axis.to_le_bytes()).collect();
+    let read = |uri: &str| if uri == "../a file.bin" { Ok(bytes.clone()) } else { Err(format!("no {uri}")) };
+    let scene = Scene::from_bytes_by("held", json, &read, &LoadOptions::default()).expect("a triangle");
+    assert_eq!(scene.meshes()[0].primitives[0].positions, corners);
+    let none = |_: &str| Err("the caller has no such file".to_owned());
+    let error = Scene::from_bytes_by("held", json, &none, &LoadOptions::default()).expect_err("no file").to_string();
+    assert!(error.contains("the caller has no such file"), "{error}");
+    let little = LoadOptions::default().with(|options| options.file_bytes = json.len() as u64 + 35);
+    assert!(Scene::from_bytes_by("held", json, &read, &little).is_err(), "beyond the limit");
 }

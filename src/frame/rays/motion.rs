@@ -31,6 +31,8 @@ pub(crate) struct Motion {
 pub(super) struct Part {
     instance: Instance,
     triangles: Range<usize>,
+    /// Of the scene's meshes: others have other triangles.
+    meshes: u64,
 }
 
 impl Part {
@@ -43,17 +45,18 @@ impl Part {
         let Instance { node, mesh, primitive, world: _, flips_winding } = self.instance;
         let those = &other.instance;
         (node, mesh, primitive, flips_winding) == (those.node, those.mesh, those.primitive, those.flips_winding)
-            && self.triangles == other.triangles
+            && (&self.triangles, self.meshes) == (&other.triangles, other.meshes)
     }
 }
 
 /// The instances of a scene, in the order of its triangles.
 pub(super) fn parts(scene: &Scene) -> Vec<Part> {
     let mut first = 0;
+    let meshes = scene.revisions().meshes;
     let part = |instance: &Instance| {
         let count = scene.meshes()[instance.mesh.0].primitives[instance.primitive].triangle_count();
         first += count;
-        Part { instance: *instance, triangles: first - count..first }
+        Part { instance: *instance, triangles: first - count..first, meshes }
     };
     scene.instances().iter().map(part).collect()
 }
@@ -70,7 +73,7 @@ pub(super) fn motion(
     let moved = before.0.iter().zip(after.0).filter(|(a, b)| a.instance.world != b.instance.world);
     // What a node places lies together.
     let mut moved_nodes: Vec<(NodeId, Range<usize>)> = Vec::new();
-    for (Part { instance, triangles }, _) in moved.filter(|(part, _)| !part.triangles.is_empty()) {
+    for (Part { instance, triangles, meshes: _ }, _) in moved.filter(|(part, _)| !part.triangles.is_empty()) {
         match moved_nodes.last_mut().filter(|(node, range)| *node == instance.node && range.end == triangles.start) {
             Some((_, range)) => range.end = triangles.end,
             None => moved_nodes.push((instance.node, triangles.clone())),

@@ -6,45 +6,70 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The scene's folder, and how much may still be read.
+/// Reads a file by the URI that names it, percent-encoding undone; says what is wrong otherwise. Several threads may call it at once.
+pub type ReadFile<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
+
+/// Where the files are that a glTF file names.
+pub(super) enum Source<'a> {
+    /// Beside it in this folder; without one, nowhere.
+    Folder(Option<&'a Path>),
+    /// In a file system of the caller's.
+    Caller(&'a ReadFile<'a>),
+}
+
+/// Where files are, and how much may still be read.
 pub(super) struct Files<'a> {
-    folder: Option<PathBuf>,
+    source: Source<'a>,
     options: &'a LoadOptions,
     read: AtomicU64,
 }
 
 impl<'a> Files<'a> {
-    /// Files beside a glTF file of `file_bytes` bytes; none without a folder.
-    pub(super) fn new(folder: Option<&Path>, options: &'a LoadOptions, file_bytes: u64) -> Files<'a> {
-        Files { folder: folder.map(Path::to_owned), options, read: AtomicU64::new(file_bytes) }
+    /// Files that a glTF file of `file_bytes` bytes names.
+    pub(super) fn new(source: Source<'a>, options: &'a LoadOptions, file_bytes: u64) -> Files<'a> {
+        Files { source, options, read: AtomicU64::new(file_bytes) }
     }
 
-    /// The bytes of the file that a URI names, relative to the scene's folder.
+    /// The bytes of the file that a URI names.
     pub(super) fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        let path = self.find(uri)?;
+        match self.source {
+            Source::Folder(folder) => self.read_in(folder, uri),
+            Source::Caller(read) => {
+                let bytes = read(&decoded(uri)?)?;
+                self.count(bytes.len() as u64, Path::new(uri))?;
+                Ok(bytes)
+            }
+        }
+    }
+
+    /// Adds to what was read, as far as the limit.
+    fn count(&self, bytes: u64, path: &Path) -> Result<(), String> {
+        let before = self.read.fetch_add(bytes, Ordering::Relaxed);
+        let fits = before.saturating_add(bytes) <= self.options.file_bytes;
+        if fits { Ok(()) } else { Err(too_large(path, self.options)) }
+    }
+
+    fn read_in(&self, folder: Option<&Path>, uri: &str) -> Result<Vec<u8>, String> {
+        let path = self.find(folder, uri)?;
         let failed = |error: std::io::Error| format!("cannot read {}: {error}", path.display());
         // A pipe or a device could block for ever or never end.
         let metadata = std::fs::metadata(&path).map_err(failed)?;
         if !metadata.is_file() {
             return Err(format!("cannot read {}: it is not a file", path.display()));
         }
-        let before = self.read.fetch_add(metadata.len(), Ordering::Relaxed);
-        if before.saturating_add(metadata.len()) > self.options.file_bytes {
-            return Err(too_large(&path, self.options));
-        }
+        self.count(metadata.len(), &path)?;
         std::fs::read(&path).map_err(failed)
     }
 
-    fn find(&self, uri: &str) -> Result<PathBuf, String> {
-        let shown: String = uri.chars().take(80).collect();
+    fn find(&self, folder: Option<&Path>, uri: &str) -> Result<PathBuf, String> {
+        let shown = shown(uri);
         let local = uri.strip_prefix("file://").map(|path| path.strip_prefix("localhost").unwrap_or(path));
         if local.is_none() && has_scheme(uri) {
             return Err(format!(
                 "the uri {shown:?} is not a relative path; download the file and put it beside the glTF file"
             ));
         }
-        let decoded = percent_decode(local.unwrap_or(uri))
-            .ok_or_else(|| format!("the uri {shown:?} is not valid percent-encoded UTF-8"))?;
+        let decoded = decoded(local.unwrap_or(uri))?;
         let outside = |how: &str| {
             Err(format!(
                 "the uri {shown:?} {how}; put the file beside the glTF file, or if you trust the scene allow it by \
@@ -56,7 +81,6 @@ impl<'a> Files<'a> {
         if !self.options.allow_outside_files && (absolute || local.is_some()) {
             return outside("is an absolute path");
         }
-        let folder = self.folder.as_ref();
         let folder = folder
             .ok_or_else(|| format!("the uri {shown:?} names a file, but no directory to find it in was given"))?;
         let path = folder.join(relative);
@@ -71,6 +95,15 @@ impl<'a> Files<'a> {
         let home = home.map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
         if resolved.starts_with(home) { Ok(resolved) } else { outside("leads out of the scene's folder") }
     }
+}
+
+fn shown(uri: &str) -> String {
+    uri.chars().take(80).collect()
+}
+
+/// The path that a URI stands for.
+fn decoded(uri: &str) -> Result<String, String> {
+    percent_decode(uri).ok_or_else(|| format!("the uri {:?} is not valid percent-encoded UTF-8", shown(uri)))
 }
 
 /// The bytes of the glTF file itself, which may also be a pipe.

@@ -20,7 +20,8 @@ use super::{LoadOptions, Scene, SceneError};
 use accessor::Accessors;
 use container::Storage;
 use document::Document;
-use files::{Files, read_main};
+pub use files::ReadFile;
+use files::{Files, Source, read_main};
 use loader::Loader;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -75,6 +76,28 @@ impl Scene {
         base_dir: Option<&Path>,
         options: &LoadOptions,
     ) -> Result<Scene, SceneError> {
+        Scene::from_bytes_and(name, bytes, Source::Folder(base_dir), options)
+    }
+
+    /// As [`Scene::from_bytes_with`]; files that it refers to are read by `read`, from wherever the caller keeps them.
+    ///
+    /// # Errors
+    /// Those of [`Scene::from_bytes`].
+    pub fn from_bytes_by(
+        name: &str,
+        bytes: &[u8],
+        read: &ReadFile<'_>,
+        options: &LoadOptions,
+    ) -> Result<Scene, SceneError> {
+        Scene::from_bytes_and(name, bytes, Source::Caller(read), options)
+    }
+
+    fn from_bytes_and(
+        name: &str,
+        bytes: &[u8],
+        source: Source<'_>,
+        options: &LoadOptions,
+    ) -> Result<Scene, SceneError> {
         let malformed = |fault: String| SceneError::Malformed { scene: name.to_owned(), fault };
         let (json, binary) = container::split(bytes).map_err(malformed)?;
         let document: Document =
@@ -89,7 +112,7 @@ impl Scene {
         if !required.is_empty() {
             return Err(SceneError::RequiredExtensions { scene: name.to_owned(), extensions: required.join(", ") });
         }
-        let files = Files::new(base_dir, options, bytes.len() as u64);
+        let files = Files::new(source, options, bytes.len() as u64);
         let storage = Storage::read(&document, binary, files, bytes.len() as u64);
         let mut loader = Loader {
             accessors: Accessors::new(&document, &storage),

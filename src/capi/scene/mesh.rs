@@ -1,0 +1,269 @@
+//! Meshes from the host's memory.
+
+use std::ffi::{c_char, c_void};
+
+use rayon::prelude::*;
+
+use super::super::border::call;
+use super::super::descriptor::{Descriptor, descriptors, read, slice};
+use super::super::status::{Fault, Status};
+use super::super::text::optional_text;
+use super::handle::{Id, SceneHandle, SceneState, give_id, index_of};
+use crate::scene::{MaterialId, Mesh, MeshId, Primitive};
+
+/// 32-bit floats.
+pub const IRRADIA_FORMAT_FLOAT32: u32 = 0;
+/// Bytes that stand for 0 to 1.
+pub const IRRADIA_FORMAT_UNORM8: u32 = 1;
+/// 16-bit whole numbers that stand for 0 to 1.
+pub const IRRADIA_FORMAT_UNORM16: u32 = 2;
+
+/// 32-bit indices.
+pub const IRRADIA_INDEX_UINT32: u32 = 0;
+/// 16-bit indices.
+pub const IRRADIA_INDEX_UINT16: u32 = 1;
+
+/// One attribute of all vertices.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct VertexAttribute {
+    /// The first vertex's; null: the vertices do not have it.
+    pub data: *const c_void,
+    /// Bytes from one vertex to the next; 0: they lie one behind the other.
+    pub stride: usize,
+    /// One of IRRADIA_FORMAT_…; positions, normals and tangents are floats.
+    pub format: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// A list of triangles with one material.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct PrimitiveDescriptor {
+    /// sizeof(irradia_primitive_descriptor), in each of an array.
+    pub size: usize,
+    /// The material; not 0.
+    pub material: Id,
+    /// One of IRRADIA_INDEX_….
+    pub index_format: u32,
+    /// Three indices a triangle, counter-clockwise as its front is seen; null: vertices in their order.
+    pub indices: *const c_void,
+    /// How many.
+    pub index_count: usize,
+    /// How many vertices.
+    pub vertex_count: usize,
+    /// x, y, z; metres after the node's transform. Finite.
+    pub positions: VertexAttribute,
+    /// x, y, z; made unit vectors. Without them triangles are flat.
+    pub normals: VertexAttribute,
+    /// x, y, z along +u, and ±1: the bitangent is that times normal × tangent. Where a normal texture needs them and they are not given, they are made.
+    pub tangents: VertexAttribute,
+    /// u, v of the sets 0 and 1; v grows downwards in the image.
+    pub texcoords: [VertexAttribute; 2],
+    /// Linear red, green, blue, alpha, which multiply the base colour.
+    pub colors: VertexAttribute,
+}
+
+/// Primitives that nodes place together.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MeshDescriptor {
+    /// sizeof(irradia_mesh_descriptor).
+    pub size: usize,
+    /// Null: none.
+    pub name: *const c_char,
+    /// An array; its elements are as far apart as the size of the first one says.
+    pub primitives: *const PrimitiveDescriptor,
+    /// How many.
+    pub primitive_count: usize,
+}
+
+descriptors! {
+    PrimitiveDescriptor = "primitive descriptor", size_of::<PrimitiveDescriptor>();
+    MeshDescriptor = "mesh descriptor", size_of::<MeshDescriptor>();
+}
+
+/// N numbers of each vertex.
+///
+/// # Safety
+/// `attribute` is what the header asks for, of `count` vertices.
+unsafe fn vertices<const N: usize>(
+    attribute: &VertexAttribute,
+    count: usize,
+    what: &str,
+    formats: &[u32],
+) -> Result<Option<Vec<[f32; N]>>, Fault> {
+    if attribute.data.is_null() || count == 0 {
+        return Ok(None);
+    }
+    if !formats.contains(&attribute.format) {
+        return Err(Fault::argument(format!("{what} cannot be of format {}", attribute.format)));
+    }
+    let width = match attribute.format {
+        IRRADIA_FORMAT_UNORM8 => N,
+        IRRADIA_FORMAT_UNORM16 => 2 * N,
+        _ => 4 * N,
+    };
+    let stride = if attribute.stride == 0 { width } else { attribute.stride };
+    if stride < width {
+        return Err(Fault::argument(format!("{what} are {stride} bytes apart and {width} bytes long")));
+    }
+    let bytes = stride.checked_mul(count - 1).and_then(|bytes| bytes.checked_add(width));
+    let bytes = bytes.ok_or_else(|| Fault::argument(format!("{count} {what} do not fit into memory")))?;
+    // SAFETY: the caller's.
+    let bytes = unsafe { slice(attribute.data.cast::<u8>(), bytes, what) }?;
+    let value: fn(&[u8]) -> f32 = match attribute.format {
+        IRRADIA_FORMAT_UNORM8 => |bytes| f32::from(bytes[0]) / 255.0,
+        IRRADIA_FORMAT_UNORM16 => |bytes| f32::from(u16::from_ne_bytes([bytes[0], bytes[1]])) / 65535.0,
+        _ => |bytes| f32::from_ne_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+    };
+    let number = width / N;
+    if attribute.format == IRRADIA_FORMAT_FLOAT32 && stride == width {
+        return Ok(Some(bytemuck::pod_collect_to_vec(bytes)));
+    }
+    let vertex = |vertex: &[u8]| std::array::from_fn(|axis| value(&vertex[axis * number..]));
+    Ok(Some(bytes.par_chunks(stride).map(vertex).collect()))
+}
+
+fn check_finite<const N: usize>(values: Option<&Vec<[f32; N]>>, what: &str) -> Result<(), Fault> {
+    let bad =
+        values.and_then(|values| values.par_iter().position_first(|value| !value.iter().all(|axis| axis.is_finite())));
+    bad.map_or(Ok(()), |vertex| Err(Fault::argument(format!("{what} of vertex {vertex} are not finite"))))
+}
+
+/// # Safety
+/// `given` is what the header asks for.
+unsafe fn primitive(given: &PrimitiveDescriptor) -> Result<Primitive, Fault> {
+    let (count, floats) = (given.vertex_count, &[IRRADIA_FORMAT_FLOAT32][..]);
+    let any = &[IRRADIA_FORMAT_FLOAT32, IRRADIA_FORMAT_UNORM8, IRRADIA_FORMAT_UNORM16][..];
+    let material = MaterialId(index_of(given.material, "material")?);
+    // SAFETY: the caller's.
+    let positions = unsafe { vertices::<3>(&given.positions, count, "positions", floats) }?;
+    let positions = positions.ok_or_else(|| Fault::argument("a primitive has no positions"))?;
+    let vertex_count = u32::try_from(count).map_err(|_| Fault::argument("a primitive has more than 2³² vertices"))?;
+    let indices = match (given.indices.is_null(), given.index_format) {
+        (true, _) => (0..vertex_count).collect(),
+        (_, IRRADIA_INDEX_UINT32) => {
+            // SAFETY: the caller's.
+            unsafe { slice(given.indices.cast::<u32>(), given.index_count, "indices") }?.to_vec()
+        }
+        (_, IRRADIA_INDEX_UINT16) => {
+            // SAFETY: the caller's.
+            let short = unsafe { slice(given.indices.cast::<u16>(), given.index_count, "indices") }?;
+            short.iter().map(|&index| u32::from(index)).collect()
+        }
+        (_, other) => {
+            return Err(Fault::argument(format!("the index format is {other}; write one of IRRADIA_INDEX_…")));
+        }
+    };
+    // SAFETY: the caller's.
+    let primitive = unsafe {
+        Primitive {
+            positions,
+            normals: vertices(&given.normals, count, "normals", floats)?,
+            tangents: vertices(&given.tangents, count, "tangents", floats)?,
+            texcoords: [
+                vertices(&given.texcoords[0], count, "texture coordinates", any)?,
+                vertices(&given.texcoords[1], count, "texture coordinates", any)?,
+            ],
+            colors: vertices(&given.colors, count, "colours", any)?,
+            indices,
+            material,
+            source_bytes: 0,
+        }
+    };
+    check_finite(primitive.texcoords[0].as_ref(), "texture coordinates")?;
+    check_finite(primitive.texcoords[1].as_ref(), "texture coordinates")?;
+    check_finite(primitive.colors.as_ref(), "colours")?;
+    Ok(primitive)
+}
+
+/// # Safety
+/// `descriptor` is what the header asks for, or null, which is a fault.
+unsafe fn mesh(state: &mut SceneState, descriptor: *const MeshDescriptor) -> Result<Mesh, Fault> {
+    // SAFETY: the caller's.
+    let given = unsafe { read(descriptor) }?;
+    // SAFETY: the caller's.
+    let name = unsafe { optional_text(given.name, "the mesh's name") }?.unwrap_or_default().to_owned();
+    if given.primitive_count == 0 {
+        return Err(Fault::argument(format!("the mesh {name:?} has no primitives")));
+    }
+    // SAFETY: the caller's: the first one is there.
+    let stride = unsafe { read(given.primitives) }?.size;
+    let descriptors = (0..given.primitive_count).map(|index| {
+        let pointer = given.primitives.wrapping_byte_add(index * stride);
+        // SAFETY: the caller's: elements are as far apart as the first one is large.
+        let descriptor = unsafe { read(pointer) }?;
+        if descriptor.size == stride {
+            Ok(descriptor)
+        } else {
+            let sentence = format!(
+                "{} {index} has {} bytes and the first one {stride}",
+                PrimitiveDescriptor::NAME,
+                descriptor.size
+            );
+            Err(Fault::argument(sentence))
+        }
+    });
+    let descriptors = descriptors.collect::<Result<Vec<_>, Fault>>()?;
+    let shared = Sent(descriptors);
+    state.work(move |scene| {
+        let Sent(descriptors) = { shared };
+        let mut primitives = Vec::with_capacity(descriptors.len());
+        for descriptor in &descriptors {
+            // SAFETY: the caller's; the host's memory stays as it is during the call.
+            let mut made = unsafe { primitive(descriptor) }?;
+            scene.complete_primitive(&name, &mut made)?;
+            primitives.push(made);
+        }
+        Ok(Mesh { name, primitives })
+    })
+}
+
+/// Descriptors on their way to another thread.
+struct Sent(Vec<PrimitiveDescriptor>);
+
+// SAFETY: their pointers are read during the call alone, as the header says, by whichever thread.
+unsafe impl Send for Sent {}
+
+/// Adds a mesh; a node must place it before it is seen. Everything is copied.
+///
+/// `id`: receives its identifier; may be null.
+///
+/// Errors: IRRADIA_ERROR_ARGUMENT and IRRADIA_ERROR_SCENE for numbers that are not finite, indices beyond the vertices, materials that are not there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn irradia_scene_add_mesh(
+    scene: *mut SceneHandle,
+    descriptor: *const MeshDescriptor,
+    id: *mut Id,
+) -> Status {
+    call(|border| {
+        // SAFETY: the host's pointers are what the header asks for.
+        let state = unsafe { border.enter(scene) }?;
+        // SAFETY: as above.
+        let mesh = unsafe { mesh(state, descriptor) }?;
+        let MeshId(index) = state.work(|scene| scene.add_mesh(mesh))?;
+        // SAFETY: as above.
+        unsafe { give_id(id, index) };
+        Ok(())
+    })
+}
+
+/// Replaces a mesh wherever it stands, for instance by one whose vertices moved. It has as many primitives as before; anything else may differ.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn irradia_scene_set_mesh(
+    scene: *mut SceneHandle,
+    id: Id,
+    descriptor: *const MeshDescriptor,
+) -> Status {
+    call(|border| {
+        // SAFETY: the host's pointers are what the header asks for.
+        let state = unsafe { border.enter(scene) }?;
+        let index = index_of(id, "mesh")?;
+        // SAFETY: as above.
+        let mesh = unsafe { mesh(state, descriptor) }?;
+        state.work(|scene| scene.set_mesh(MeshId(index), mesh))?;
+        Ok(())
+    })
+}

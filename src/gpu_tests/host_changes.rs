@@ -1,0 +1,87 @@
+//! What a host program changes between frames: vertices of meshes, and a frame that it stops.
+
+use glam::{DAffine3, DVec3};
+
+use super::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, settings_of, view};
+use super::session::Session;
+use crate::method::Error;
+use crate::renderer::{FrameRequest, Progress, Technique};
+use crate::scene::{LightKind, MeshId, Scene};
+use crate::slot::Slot;
+use crate::vulkan::VulkanError;
+use std::sync::{Arc, Mutex};
+
+/// A room with a white block in it whose top lies at `height`.
+fn room(height: f32) -> Scene {
+    let mut scene = closed_box(2.0, lambert([0.7; 3]));
+    let white = scene.add_material(lambert([0.9; 3])).expect("it is sound");
+    let top = [[-0.5, height, 0.5], [0.5, height, 0.5], [0.5, height, -0.5], [-0.5, height, -0.5]];
+    place(&mut scene, vec![quad(top, white)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Point, DVec3::new(0.0, 1.8, 0.0), DVec3::NEG_Y, [20.0; 3]);
+    scene
+}
+
+fn seen(size: [u32; 2]) -> FrameRequest {
+    request(size, view(DVec3::new(0.0, 1.0, 1.9), DVec3::new(0.0, -1.0, 0.0)), &[Slot::Direct, Slot::Diffuse])
+}
+
+/// A mesh whose vertices moved is, to the bit, one that was there from the beginning: to rasterisers, to rays, to what is kept of particles.
+#[test]
+fn vertices_move_between_frames() {
+    let session = Session::open();
+    for technique in [Technique::Hybrid, Technique::Particles] {
+        let settings = settings_of(technique, &[("particles.count", "2000"), ("vpl.count", "200")]);
+        let mut scene = room(-1.0);
+        let mesh = MeshId(scene.meshes().len() - 1);
+        let mut renderer = session.renderer(&settings);
+        let before = renderer.render(&scene, &seen([32, 32])).expect("a frame");
+        scene.set_mesh(mesh, room(-0.2).meshes()[mesh.0].clone()).expect("it is sound");
+        let after = renderer.render(&scene, &seen([32, 32])).expect("a frame");
+        let fresh = session.renderer(&settings).render(&room(-0.2), &seen([32, 32])).expect("a frame");
+        for slot in [Slot::Direct, Slot::Diffuse] {
+            assert!(before.slots[&slot] != after.slots[&slot], "{technique:?}: {slot} shows the old vertices");
+            assert!(after.slots[&slot] == fresh.slots[&slot], "{technique:?}: {slot} is not that of a fresh scene");
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_is_stopped_leaves_the_renderer_as_it_was() {
+    let session = Session::open();
+    let scene = builtin("cornell-point");
+    let camera = scene.camera_view(None).expect("a view");
+    for technique in [Technique::Path, Technique::Hybrid] {
+        let settings = settings_of(technique, &[("path.spp", "8")]);
+        let mut renderer = session.renderer(&settings);
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let hears = heard.clone();
+        let mut wanted = request([16, 16], camera.clone(), &[Slot::Diffuse]);
+        wanted.progress = Some(Progress::new(move |done| {
+            let mut heard = hears.lock().expect("nobody panics");
+            heard.push(done);
+            heard.len() < 2
+        }));
+        let stopped = renderer.render(&scene, &wanted);
+        if technique == Technique::Path {
+            assert!(matches!(stopped, Err(Error::Vulkan(VulkanError::Cancelled))), "{stopped:?}");
+            assert_eq!(heard.lock().expect("nobody panics").len(), 2);
+        }
+        let hears = heard.clone();
+        wanted.progress = Some(Progress::new(move |done| {
+            hears.lock().expect("nobody panics").push(done);
+            true
+        }));
+        heard.lock().expect("nobody panics").clear();
+        renderer.cancel().ask();
+        assert!(matches!(renderer.render(&scene, &wanted), Err(Error::Vulkan(VulkanError::Cancelled))));
+        renderer.invalidate();
+        let frame = renderer.render(&scene, &wanted).expect("nobody stops it");
+        let heard = heard.lock().expect("nobody panics").clone();
+        let fresh = session.renderer(&settings).render(&scene, &wanted).expect("a frame");
+        assert!(frame.slots == fresh.slots, "{technique:?}");
+        assert!(heard.iter().all(|done| (0.0..=1.0).contains(done)), "{heard:?}");
+        if technique == Technique::Path {
+            assert!(heard.is_sorted() && heard.len() > 4 && heard.last() == Some(&1.0), "{heard:?}");
+        }
+    }
+}
