@@ -78,27 +78,6 @@
 // Correct use, and shaders that check their memory accesses; slow.
 #define IRRADIA_VALIDATION_GPU 3
 
-// What the surfaces themselves emit, and the sky where no surface is.
-#define IRRADIA_SLOT_EMISSION 1
-
-// Light from the lights, shadowed.
-#define IRRADIA_SLOT_DIRECT 2
-
-// Light that was scattered diffusely before.
-#define IRRADIA_SLOT_DIFFUSE 4
-
-// Light that was reflected or refracted before, on diffuse surfaces.
-#define IRRADIA_SLOT_CAUSTICS 8
-
-// What mirrors, metals and glass show, but for the lights.
-#define IRRADIA_SLOT_SPECULAR 16
-
-// The sum of all slots.
-#define IRRADIA_SLOT_IMAGE 32
-
-// The image for a display: sRGB, 8 bits, by the tone map of the frame.
-#define IRRADIA_SLOT_DISPLAY 64
-
 // The ACES filmic curve, after exposure to the log-average luminance.
 #define IRRADIA_TONE_MAP_ACES 0
 
@@ -216,6 +195,30 @@
 // What loading had to leave out or change: sentences, which stand for names here.
 #define IRRADIA_KIND_WARNING 7
 
+// What the surfaces themselves emit, and the sky where no surface is.
+#define IRRADIA_SLOT_EMISSION 1
+
+// Light from the lights, shadowed.
+#define IRRADIA_SLOT_DIRECT 2
+
+// Light that was scattered diffusely before.
+#define IRRADIA_SLOT_DIFFUSE 4
+
+// Light that was reflected or refracted before, on diffuse surfaces.
+#define IRRADIA_SLOT_CAUSTICS 8
+
+// What mirrors, metals and glass show, but for the lights.
+#define IRRADIA_SLOT_SPECULAR 16
+
+// The sum of all slots.
+#define IRRADIA_SLOT_IMAGE 32
+
+// The image for a display: sRGB, 8 bits, by the tone map of the frame.
+#define IRRADIA_SLOT_DISPLAY 64
+
+// Of a resource that no other queue family owns.
+#define IRRADIA_FAMILY_SAME 4294967295
+
 // A Vulkan device and what is shared on it. Its calls may come from several threads at once.
 typedef struct irradia_context irradia_context;
 
@@ -224,6 +227,9 @@ typedef struct irradia_frame irradia_frame;
 
 // Settings, and what frames leave on the device for the next one. One call at a time may use it, but for irradia_renderer_cancel().
 typedef struct irradia_renderer irradia_renderer;
+
+// What a device must be created with, for irradia to use it.
+typedef struct irradia_requirements irradia_requirements;
 
 // What there is to light. One call at a time may use it; irradia_render() reads it during the call alone.
 typedef struct irradia_scene irradia_scene;
@@ -260,6 +266,53 @@ typedef struct {
 // several at once. It must not call the library.
 typedef void (*irradia_log_function)(void *user, uint32_t level, const char *message);
 
+// A function of no known type: vkGetInstanceProcAddr, cast.
+typedef void (*irradia_void_function)(void);
+
+// A host's instance and one of its physical devices.
+typedef struct {
+    // sizeof(irradia_instance_descriptor).
+    size_t size;
+    // vkGetInstanceProcAddr, cast. Everything else is looked up by it: the library opens no loader.
+    irradia_void_function get_instance_proc_addr;
+    // VkInstance.
+    void *instance;
+    // VkPhysicalDevice.
+    void *physical_device;
+    // The apiVersion that the instance was created for, at least VK_API_VERSION_1_3.
+    uint32_t api_version;
+    // Zero.
+    uint32_t reserved;
+} irradia_instance_descriptor;
+
+// Called before and after every submission to the host's queue. From any thread, by one at a time; it must not call the library.
+typedef void (*irradia_queue_function)(void *user);
+
+// A host's device. It and all that it stands on must outlive the context and what was made on it. Nothing of it is destroyed.
+typedef struct {
+    // sizeof(irradia_device_descriptor).
+    size_t size;
+    // Its instance and physical device.
+    const irradia_instance_descriptor *instance;
+    // VkDevice.
+    void *device;
+    // VkQueue, for graphics and compute.
+    void *queue;
+    // The queue's family.
+    uint32_t queue_family;
+    // 1: VK_EXT_debug_utils is enabled on the instance; passes and objects then have names in the host's tools.
+    uint32_t debug_utils;
+    // The VkPhysicalDeviceFeatures2 of what was enabled, with the structs behind it, as it stood behind VkDeviceCreateInfo; it may be the one of
+    // irradia_requirements_get(). Not needed any more once the call returns.
+    const void *features;
+    // Called before each submission to the queue; null: nobody else uses the queue while a call of the library is in progress.
+    irradia_queue_function lock_queue;
+    // Called after it.
+    irradia_queue_function unlock_queue;
+    // Given to both.
+    void *queue_user;
+} irradia_device_descriptor;
+
 // How a context is made.
 typedef struct {
     // sizeof(irradia_context_descriptor).
@@ -274,6 +327,8 @@ typedef struct {
     irradia_log_function log;
     // Given to `log`.
     void *log_user;
+    // The host's own device in place of one of the library's; `device` and `validation` must be zero then. Null: the library opens one.
+    const irradia_device_descriptor *host_device;
 } irradia_context_descriptor;
 
 // Hears how far a frame is: `done` from 0 to 1. Returns 0 to go on, anything else to stop: the call then returns IRRADIA_ERROR_CANCELLED.
@@ -281,6 +336,49 @@ typedef struct {
 // It is called from the thread that called irradia_render() or one of the library's own, one call at a time. It must not call the library, but for
 // irradia_renderer_cancel().
 typedef uint32_t (*irradia_progress_function)(void *user, double done);
+
+// How the host uses a resource before or after the copy: a half of its barrier.
+typedef struct {
+    // VkImageLayout; before, VK_IMAGE_LAYOUT_UNDEFINED if what it holds is of no interest. Without meaning for buffers.
+    uint32_t layout;
+    // The queue family that owns it, which then has the other half of the barrier; IRRADIA_FAMILY_SAME: that of the context's queue.
+    uint32_t family;
+    // VkPipelineStageFlags2 of the uses before, or after.
+    uint64_t stages;
+    // VkAccessFlags2 of these.
+    uint64_t access;
+} irradia_resource_use;
+
+// Where a slot is left on the device: an image or a buffer of the context's device. The copy is one command; nothing of it passes through the host's memory.
+typedef struct {
+    // sizeof(irradia_target_descriptor), in each of an array.
+    size_t size;
+    // One of IRRADIA_SLOT_… but IRRADIA_SLOT_DISPLAY. Radiance in W/(m² sr), linear Rec. 709; a fourth channel of no meaning.
+    uint32_t slot;
+    // 1: `resource` is a VkBuffer with VK_BUFFER_USAGE_TRANSFER_DST_BIT, four floats a pixel. 0: a VkImage with VK_IMAGE_USAGE_TRANSFER_DST_BIT, of two dimensions, at least as
+    // large as the frame, of which the first layer of the first mip level is filled.
+    uint32_t is_buffer;
+    // The handle.
+    uint64_t resource;
+    // Of an image, its VkFormat. VK_FORMAT_R32G32B32A32_SFLOAT is copied; others are converted, as vkCmdBlitImage does.
+    uint32_t format;
+    // Of a buffer, pixels from one row to the next; 0: the frame's width.
+    uint32_t row_pixels;
+    // Of a buffer, bytes to the first pixel, a multiple of 16.
+    uint64_t offset;
+    // How the host used it until now.
+    irradia_resource_use before;
+    // How the host will use it.
+    irradia_resource_use after;
+} irradia_target_descriptor;
+
+// A timeline semaphore of the context's device, and a value of it.
+typedef struct {
+    // VkSemaphore of type VK_SEMAPHORE_TYPE_TIMELINE.
+    uint64_t semaphore;
+    // Its value.
+    uint64_t value;
+} irradia_semaphore_point;
 
 // What is asked of one frame.
 typedef struct {
@@ -310,6 +408,22 @@ typedef struct {
     irradia_progress_function progress;
     // Given to `progress`.
     void *progress_user;
+    // What is left on the device; an array whose elements are as far apart as the size of the first one says. Their slots need not be in `slots`.
+    const irradia_target_descriptor *targets;
+    // How many.
+    size_t target_count;
+    // 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none.
+    uint32_t stay_on_device;
+    // How long points are waited for, seconds; 0: 10. A point that is not reached by then is IRRADIA_ERROR_DEVICE, and nothing is signalled.
+    float patience;
+    // Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are.
+    const irradia_semaphore_point *waits;
+    // How many.
+    size_t wait_count;
+    // Points that are signalled once all targets are filled. A call that fails signals none.
+    const irradia_semaphore_point *signals;
+    // How many.
+    size_t signal_count;
 } irradia_frame_descriptor;
 
 // Where pixels go.
@@ -624,6 +738,23 @@ typedef struct {
     uint64_t bytes;
 } irradia_memory_descriptor;
 
+// What a device must be created with. It stands as long as the irradia_requirements that it came from.
+typedef struct {
+    // sizeof(irradia_requirements_descriptor).
+    size_t size;
+    // A VkPhysicalDeviceFeatures2 and the structs behind it, for VkDeviceCreateInfo::pNext: what is required, and of the rest what is used where it is there.
+    // A host with features of its own sets theirs beside these instead.
+    const void *features;
+    // Extensions that must be enabled: none.
+    const char *const *extensions;
+    // How many.
+    size_t extension_count;
+    // A family with graphics, compute and timestamps; another one with these serves too.
+    uint32_t queue_family;
+    // The least apiVersion of instance and device.
+    uint32_t api_version;
+} irradia_requirements_descriptor;
+
 // Done.
 #define IRRADIA_OK 0
 
@@ -933,6 +1064,21 @@ irradia_status irradia_frame_pass(const irradia_frame *frame, size_t index, irra
 
 // Fills a descriptor, whose size is set, with what one piece holds; `index` below `memory_count`.
 irradia_status irradia_frame_memory(const irradia_frame *frame, size_t index, irradia_memory_descriptor *memory);
+
+// Says what a device must be created with, before it is.
+//
+// `requirements`: receives them; irradia_requirements_destroy() ends them.
+//
+// Errors: IRRADIA_ERROR_DEVICE if the physical device cannot be used at all; the sentence says what it lacks.
+irradia_status irradia_requirements_create(const irradia_instance_descriptor *instance,
+                                           irradia_requirements **requirements);
+
+// Fills a descriptor, whose size is set.
+irradia_status irradia_requirements_get(const irradia_requirements *requirements,
+                                        irradia_requirements_descriptor *descriptor);
+
+// Ends requirements. Null is allowed.
+void irradia_requirements_destroy(irradia_requirements *requirements);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -41,6 +41,7 @@ class _ContextDescriptor(_Descriptor):
         ("log_level", ctypes.c_uint32),
         ("log", ctypes.c_void_p),
         ("log_user", ctypes.c_void_p),
+        ("host_device", ctypes.c_void_p),
     ]
 
 
@@ -59,6 +60,14 @@ class _FrameDescriptor(_Descriptor):
         ("reserved", ctypes.c_uint32),
         ("progress", ctypes.c_void_p),
         ("progress_user", ctypes.c_void_p),
+        ("targets", ctypes.c_void_p),
+        ("target_count", ctypes.c_size_t),
+        ("stay_on_device", ctypes.c_uint32),
+        ("patience", ctypes.c_float),
+        ("waits", ctypes.c_void_p),
+        ("wait_count", ctypes.c_size_t),
+        ("signals", ctypes.c_void_p),
+        ("signal_count", ctypes.c_size_t),
     ]
 
 

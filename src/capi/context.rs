@@ -8,6 +8,7 @@ use super::descriptor::{descriptors, read_optional};
 use super::log::{LogFunction, dispatch};
 use super::status::{Fault, Status};
 use super::text::{self, optional_text};
+use super::vulkan::{self, DeviceDescriptor};
 use super::workers::Workers;
 use crate::renderer::{Context, ContextOptions};
 use crate::vulkan::Validation;
@@ -37,6 +38,8 @@ pub struct ContextDescriptor {
     pub log: LogFunction,
     /// Given to `log`.
     pub log_user: *mut c_void,
+    /// The host's own device in place of one of the library's; `device` and `validation` must be zero then. Null: the library opens one.
+    pub host_device: *const DeviceDescriptor,
 }
 
 descriptors! {
@@ -102,6 +105,7 @@ unsafe fn open(descriptor: *const ContextDescriptor) -> Result<ContextHandle, Fa
         log_level: 0,
         log: None,
         log_user: std::ptr::null_mut(),
+        host_device: std::ptr::null(),
     });
     let validation = match given.validation {
         IRRADIA_VALIDATION_OFF => Validation::Off,
@@ -114,7 +118,15 @@ unsafe fn open(descriptor: *const ContextDescriptor) -> Result<ContextHandle, Fa
     let device = unsafe { optional_text(given.device, "the device's name") }?.map(str::to_owned);
     let workers = Workers::new(dispatch(given.log, given.log_user, given.log_level)?)?;
     let options = ContextOptions { device, validation, ..ContextOptions::default() };
-    let context = workers.listen(|| Context::new(&options))?;
+    let context = if given.host_device.is_null() {
+        workers.listen(|| Context::new(&options))?
+    } else {
+        if options.device.is_some() || options.validation != Validation::Off {
+            return Err(Fault::argument("a context on the host's device chooses neither a device nor validation"));
+        }
+        // SAFETY: the caller's.
+        workers.listen(|| unsafe { vulkan::context_on(given.host_device) })?
+    };
     let device_name = text::owned(&context.device().name);
     Ok(ContextHandle { shared: Arc::new(Shared { context, workers, device_name }) })
 }

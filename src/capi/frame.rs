@@ -4,29 +4,15 @@ use std::ffi::{CString, c_char, c_void};
 
 use super::border::{Guarded, call, give, handles, take};
 use super::camera::{self, CameraDescriptor};
-use super::descriptor::{descriptors, read};
+use super::descriptor::{boolean, descriptors, read, slice};
 use super::renderer::{RendererHandle, RendererState};
 use super::scene::SceneHandle;
+use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, slot_of};
 use super::status::{Fault, Status};
+use super::targets::{SemaphorePoint, TargetDescriptor, points, targets};
 use super::text::owned;
 use crate::image::ToneMap;
-use crate::renderer::{Frame, FrameRequest, Timing};
-use crate::slot::Slot;
-
-/// What the surfaces themselves emit, and the sky where no surface is.
-pub const IRRADIA_SLOT_EMISSION: u32 = 1;
-/// Light from the lights, shadowed.
-pub const IRRADIA_SLOT_DIRECT: u32 = 2;
-/// Light that was scattered diffusely before.
-pub const IRRADIA_SLOT_DIFFUSE: u32 = 4;
-/// Light that was reflected or refracted before, on diffuse surfaces.
-pub const IRRADIA_SLOT_CAUSTICS: u32 = 8;
-/// What mirrors, metals and glass show, but for the lights.
-pub const IRRADIA_SLOT_SPECULAR: u32 = 16;
-/// The sum of all slots.
-pub const IRRADIA_SLOT_IMAGE: u32 = 32;
-/// The image for a display: sRGB, 8 bits, by the tone map of the frame.
-pub const IRRADIA_SLOT_DISPLAY: u32 = 64;
+use crate::renderer::{Frame, FrameRequest, Handed, Timing};
 
 /// The ACES filmic curve, after exposure to the log-average luminance.
 pub const IRRADIA_TONE_MAP_ACES: u32 = 0;
@@ -76,6 +62,22 @@ pub struct FrameDescriptor {
     pub progress: ProgressFunction,
     /// Given to `progress`.
     pub progress_user: *mut c_void,
+    /// What is left on the device; an array whose elements are as far apart as the size of the first one says. Their slots need not be in `slots`.
+    pub targets: *const TargetDescriptor,
+    /// How many.
+    pub target_count: usize,
+    /// 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none.
+    pub stay_on_device: u32,
+    /// How long points are waited for, seconds; 0: 10. A point that is not reached by then is IRRADIA_ERROR_DEVICE, and nothing is signalled.
+    pub patience: f32,
+    /// Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are.
+    pub waits: *const SemaphorePoint,
+    /// How many.
+    pub wait_count: usize,
+    /// Points that are signalled once all targets are filled. A call that fails signals none.
+    pub signals: *const SemaphorePoint,
+    /// How many.
+    pub signal_count: usize,
 }
 
 descriptors! {
@@ -113,12 +115,6 @@ handles! {
     FrameHandle(FrameState) = "frame";
 }
 
-/// A slot by its bit, among those that are images of radiance; the image itself is none of them.
-pub(super) fn slot_of(bit: u32) -> Option<Slot> {
-    let index = bit.is_power_of_two().then(|| bit.trailing_zeros() as usize)?;
-    Slot::ALL.get(index).copied()
-}
-
 struct Progress {
     function: unsafe extern "C" fn(*mut c_void, f64) -> u32,
     user: *mut c_void,
@@ -136,9 +132,19 @@ impl Progress {
     }
 }
 
-fn request_of(given: &FrameDescriptor, view: crate::scene::CameraView) -> Result<FrameRequest, Fault> {
+/// # Safety
+/// The descriptor's pointers are what the header asks for.
+unsafe fn request_of(given: &FrameDescriptor, view: crate::scene::CameraView) -> Result<FrameRequest, Fault> {
     let all = 2 * IRRADIA_SLOT_DISPLAY - 1;
-    let slots = if given.slots == 0 { IRRADIA_SLOT_IMAGE } else { given.slots };
+    let stays = boolean(given.stay_on_device, "stay_on_device")?;
+    let slots = if given.slots == 0 && !stays { IRRADIA_SLOT_IMAGE } else { given.slots };
+    if stays && slots & IRRADIA_SLOT_DISPLAY != 0 {
+        return Err(Fault::argument("display values are made for the host's memory; they cannot stay on the device"));
+    }
+    if !(given.patience.is_finite() && given.patience >= 0.0) {
+        return Err(Fault::argument("the patience is negative or not finite"));
+    }
+    let patience = if given.patience > 0.0 { f64::from(given.patience) } else { 10.0 };
     if slots & !all != 0 {
         return Err(Fault::argument(format!("slots is {slots}, which is no sum of IRRADIA_SLOT_…")));
     }
@@ -153,12 +159,22 @@ fn request_of(given: &FrameDescriptor, view: crate::scene::CameraView) -> Result
         IRRADIA_TIMING_PASSES => Timing::Passes,
         other => return Err(Fault::argument(format!("the timing is {other}; write one of IRRADIA_TIMING_…"))),
     };
+    // SAFETY: the caller's.
+    let handed = unsafe {
+        Handed {
+            targets: targets(given.targets, given.target_count, given.width)?,
+            waits: points(slice(given.waits, given.wait_count, "points to wait for")?)?,
+            patience,
+            signals: points(slice(given.signals, given.signal_count, "points to signal")?)?,
+        }
+    };
     let progress = given.progress.map(|function| Progress { function, user: given.progress_user });
     Ok(FrameRequest::new([given.width, given.height], view).with(|request| {
         request.slots = (0..5).filter_map(|bit| slot_of(slots & 1 << bit)).collect();
         request.image = slots & IRRADIA_SLOT_IMAGE != 0;
         request.tonemap = (slots & IRRADIA_SLOT_DISPLAY != 0).then_some(tone_map);
         (request.index, request.time_step, request.timing) = (given.index, given.time_step, timing);
+        (request.read_back, request.handed) = (!stays, handed);
         request.progress = progress.map(|progress| crate::renderer::Progress::new(move |done| progress.goes_on(done)));
     }))
 }
@@ -185,7 +201,18 @@ pub unsafe extern "C" fn irradia_render(
         let scene = &scene.scene;
         // SAFETY: as above.
         let view = shared.workers.listen(|| unsafe { camera::choose(scene, given.camera, given.camera_name, size) })?;
-        let request = request_of(&given, view)?;
+        // SAFETY: as above.
+        let request = unsafe { request_of(&given, view) }?;
+        let points = given.wait_count > 0 || given.signal_count > 0;
+        match shared.context.shared_device().timelines_of_host() {
+            None if points || given.target_count > 0 => {
+                return Err(Fault::argument("targets and semaphores are of the context's device, which here is the library's own"));
+            }
+            Some(false) if points => {
+                return Err(Fault::argument("the host's device was created without the feature timelineSemaphore"));
+            }
+            _ => {}
+        }
         let make = || {
             let frame = shared.run(|| renderer.render(scene, &request))?;
             let texts = FrameTexts::of(&frame);

@@ -7,10 +7,10 @@
 //! | `descriptor` | structs that begin with their size |
 //! | `text`, `matrix` | C strings in and out, matrices in |
 //! | `log`, `workers` | what the library says, and the threads that it says it from |
-//! | `context` | devices |
+//! | `context`, `vulkan` | devices, the library's or the host's |
 //! | `scene/` | scenes, and the things in them |
 //! | `renderer`, `options` | settings |
-//! | `camera`, `frame`, `pixels`, `timings` | frames, what they show and what they cost |
+//! | `camera`, `slots`, `frame`, `pixels`, `targets`, `timings` | frames, what they show, where that goes, what they cost |
 //!
 //! Every type here is the host's: plain old data by value, or a handle behind a pointer. No number that comes in becomes a Rust enum or `bool` unchecked.
 
@@ -31,9 +31,12 @@ mod options;
 mod pixels;
 mod renderer;
 mod scene;
+mod slots;
 mod status;
+mod targets;
 mod text;
 mod timings;
+mod vulkan;
 mod workers;
 
 pub use camera::*;
@@ -44,8 +47,11 @@ pub use options::*;
 pub use pixels::*;
 pub use renderer::*;
 pub use scene::*;
+pub use slots::*;
 pub use status::*;
+pub use targets::*;
 pub use timings::*;
+pub use vulkan::*;
 
 /// Version of this header: major · 10000 + minor · 100 + patch. While the major version is 0, another minor version may change what is here.
 pub const IRRADIA_VERSION: u32 = 100;

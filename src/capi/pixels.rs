@@ -6,7 +6,8 @@ use half::f16;
 
 use super::border::call;
 use super::descriptor::{descriptors, read};
-use super::frame::{FrameHandle, IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, slot_of};
+use super::frame::FrameHandle;
+use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, slot_of};
 use super::status::{Fault, Status};
 use crate::image::ColorImage;
 use crate::renderer::Frame;

@@ -34,7 +34,7 @@ impl Context {
         Ok(Context::on(Device::with_traits(options, traits)?))
     }
 
-    fn on(device: Arc<Device>) -> Context {
+    pub(crate) fn on(device: Arc<Device>) -> Context {
         let pipelines = Pipelines::new(&device);
         Context { device, pipelines }
     }

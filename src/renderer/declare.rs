@@ -210,7 +210,7 @@ pub(crate) fn declare(
         }
     }
     let mut declared = Declared { slots, image: None, display: None };
-    if request.image || request.tonemap.is_some() {
+    if request.wants_image() {
         let image = compose(graph, &shared.surface, scene.sky(), |slot| declared.slot(slot));
         declared.image = Some(image);
         declared.display = request.tonemap.map(|curve| tonemap(graph, image, curve));

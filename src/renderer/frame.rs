@@ -35,6 +35,9 @@ pub struct FrameRequest {
     pub read_back: bool,
     /// Hears how far the frame is, and may stop it.
     pub progress: Option<Progress>,
+    /// What is left in a host's images and buffers.
+    #[cfg(feature = "capi")]
+    pub(crate) handed: super::handed::Handed,
 }
 
 impl FrameRequest {
@@ -51,6 +54,8 @@ impl FrameRequest {
             timing: Timing::Frame,
             read_back: true,
             progress: None,
+            #[cfg(feature = "capi")]
+            handed: super::handed::Handed::default(),
         }
     }
 
@@ -61,9 +66,22 @@ impl FrameRequest {
         self
     }
 
+    /// Whether the frame needs the sum of all slots.
+    pub(crate) fn wants_image(&self) -> bool {
+        #[cfg(feature = "capi")]
+        let handed = self.handed.wants_image();
+        #[cfg(not(feature = "capi"))]
+        let handed = false;
+        handed || self.image || self.tonemap.is_some()
+    }
+
     /// Whether the frame needs the slot, by itself or as a part of the image.
     pub(crate) fn wants(&self, slot: Slot) -> bool {
-        self.image || self.tonemap.is_some() || self.slots.contains(&slot)
+        #[cfg(feature = "capi")]
+        let handed = self.handed.wants(slot);
+        #[cfg(not(feature = "capi"))]
+        let handed = false;
+        handed || self.image || self.tonemap.is_some() || self.slots.contains(&slot)
     }
 }
 

@@ -24,6 +24,10 @@ pub(crate) mod declare;
 mod estimates;
 mod fault;
 mod frame;
+#[cfg(feature = "capi")]
+mod hand_out;
+#[cfg(feature = "capi")]
+mod handed;
 pub(crate) mod limits;
 mod methods;
 mod render;
@@ -34,6 +38,8 @@ mod technique;
 pub use choices::{CausticsMethod, DiffuseMethod, DirectMethod, Methods, SpecularMethod, UnknownMethod};
 pub use context::Context;
 pub use frame::{Estimate, Frame, FrameRequest};
+#[cfg(feature = "capi")]
+pub(crate) use handed::Handed;
 pub use render::Renderer;
 pub use repeat::{RepeatError, Repetition, check_piece};
 pub use settings::{Settings, SettingsError, options};

@@ -99,7 +99,14 @@ impl Renderer {
         // Samples are all there is to it, or else a frame is done at once.
         self.store.interrupt.done = if means.is_some() { 1.0 } else { 0.0 };
         loop {
-            let Drawn { mut frame, outgrown, fault } = self.draw_once(scene, request, means.as_deref())?;
+            let Drawn { mut frame, outgrown, fault, .. } = {
+                let drawn = self.draw_once(scene, request, means.as_deref())?;
+                #[cfg(feature = "capi")]
+                if drawn.outgrown.is_empty() && drawn.fault.is_none() {
+                    super::hand_out::hand_out(&mut self.store, &request.handed, &drawn.handed, request.size)?;
+                }
+                drawn
+            };
             if outgrown.is_empty() {
                 if let Some(fault) = fault {
                     return Err(self.explain(scene, request, means.as_deref(), fault));
@@ -171,6 +178,8 @@ impl Renderer {
         } else {
             want(&mut graph, &declared, request);
         }
+        #[cfg(feature = "capi")]
+        let handed = super::hand_out::want(&mut graph, &declared, &request.handed);
         // Display values are of use to the host alone.
         let display = declared.display.map(|display| graph.read_back_buffer(display));
 
@@ -203,7 +212,13 @@ impl Renderer {
             memory_parts: self.store.memory_by_part(),
         };
         let frame = Frame { size, image, slots, display, estimate: None, timings };
-        Ok(Drawn { frame, outgrown: std::mem::take(&mut executed.outgrown), fault })
+        Ok(Drawn {
+            frame,
+            outgrown: std::mem::take(&mut executed.outgrown),
+            fault,
+            #[cfg(feature = "capi")]
+            handed,
+        })
     }
 
     /// The passes of the frame that `request` asks for, and which of them would be skipped and why. Nothing runs.
@@ -294,6 +309,9 @@ struct Drawn {
     frame: Frame,
     outgrown: Vec<Outgrown>,
     fault: Option<Fault>,
+    /// Names of the images that go to a host.
+    #[cfg(feature = "capi")]
+    handed: Vec<Option<String>>,
 }
 
 /// Pixels that are no numbers or negative.

@@ -13,6 +13,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::crash_markers::{CrashMarkers, Marking, extension};
 use super::error::{Called, VulkanError};
+use super::features::Features;
 use super::instance::{Instance, Validation};
 use super::limits::Offer;
 use super::loader_lock;
@@ -31,17 +32,24 @@ pub struct ContextOptions {
     pub crash_markers: CrashMarkers,
 }
 
+/// Called around each submission to a host's queue: `true` before, `false` after.
+pub(crate) type TakeTurns = Box<dyn Fn(bool) + Send + Sync>;
+
 /// A logical device with one queue for everything. Shared by `Arc` with all that is made on it, and so destroyed last.
 pub(crate) struct Device {
     pub(crate) raw: ash::Device,
     physical: vk::PhysicalDevice,
-    pub(crate) queue: Mutex<vk::Queue>,
+    queue: Mutex<vk::Queue>,
+    /// A host's turns at its queue.
+    turns: Option<TakeTurns>,
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
     pub(super) marking: Marking,
     allocator: ManuallyDrop<Mutex<Allocator>>,
     live: Mutex<BTreeMap<u64, (String, u64)>>,
     next_id: AtomicU64,
+    /// Made here, and so destroyed here.
+    owned: bool,
     // Destroyed after the device.
     instance: Instance,
 }
@@ -63,32 +71,9 @@ impl Device {
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
             .queue_priorities(&priorities)];
-        let core = vk::PhysicalDeviceFeatures {
-            // A fetch beyond a texel buffer's end reads zeros, as a driver that has them does by itself.
-            robust_buffer_access: vk::Bool32::from(survey.traits.texels_in_storage),
-            fragment_stores_and_atomics: vk::TRUE,
-            draw_indirect_first_instance: vk::TRUE,
-            independent_blend: vk::TRUE,
-            // Optional ones: used where present.
-            geometry_shader: survey.features.geometry_shader,
-            multi_draw_indirect: survey.features.multi_draw_indirect,
-            pipeline_statistics_query: survey.features.pipeline_statistics_query,
-            sampler_anisotropy: survey.features.sampler_anisotropy,
-            // GPU-assisted validation counts in vertex shaders and with 64-bit integers.
-            vertex_pipeline_stores_and_atomics: survey.features.vertex_pipeline_stores_and_atomics,
-            shader_int64: if options.validation == Validation::GpuAssisted {
-                survey.features.shader_int64
-            } else {
-                vk::FALSE
-            },
-            ..Default::default()
-        };
-        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default()
-            .synchronization2(true)
-            .dynamic_rendering(true)
-            .maintenance4(true);
-        let mut vulkan12 =
-            vk::PhysicalDeviceVulkan12Features::default().scalar_block_layout(true).host_query_reset(true);
+        let mut features =
+            Features::wanted(&survey.features, survey.traits.texels_in_storage, options.validation);
+        let mut features = features.chain();
         let available = extensions_of(&instance, physical)?;
         let available: Vec<&CStr> = available.iter().filter_map(|name| name.extension_name_as_c_str().ok()).collect();
         let marker = extension(options.crash_markers, &available);
@@ -96,9 +81,7 @@ impl Device {
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&enabled)
-            .enabled_features(&core)
-            .push_next(&mut vulkan13)
-            .push_next(&mut vulkan12);
+            .push_next(&mut features);
         // The functions of the device are looked up too.
         let alone = loader_lock::changing();
         // SAFETY: the physical device belongs to the instance; the features were found present by the survey.
@@ -108,24 +91,7 @@ impl Device {
         let marking = Marking::new(options.crash_markers, marker, &instance.raw, &raw);
         let labels = instance.debug.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
         drop(alone);
-        let description = AllocatorCreateDesc {
-            instance: instance.raw.clone(),
-            device: raw.clone(),
-            physical_device: physical,
-            // Leaks are named by our own register, which also knows who is alive before shutdown.
-            debug_settings: {
-                let mut settings = gpu_allocator::AllocatorDebugSettings::default();
-                settings.log_leaks_on_shutdown = false;
-                settings
-            },
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
-        };
-        let allocator = Allocator::new(&description).map_err(|error| {
-            tracing::error!("gpu-allocator: {error}");
-            VulkanError::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, last_pass: "none".to_owned() }
-        });
-        let allocator = match allocator {
+        let allocator = match allocator_on(&instance, &raw, physical) {
             Ok(allocator) => ManuallyDrop::new(Mutex::new(allocator)),
             Err(error) => {
                 let _alone = loader_lock::changing();
@@ -138,15 +104,66 @@ impl Device {
             raw,
             physical,
             queue: Mutex::new(queue),
+            turns: None,
             survey,
             labels,
             marking,
             allocator,
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
+            owned: true,
             instance,
         };
         Ok(Arc::new(device))
+    }
+
+    /// A host's, of its parts.
+    #[cfg(feature = "capi")]
+    pub(super) fn of_parts(
+        (instance, physical, survey): (Instance, vk::PhysicalDevice, Survey),
+        (raw, queue): (ash::Device, vk::Queue),
+        (debug_utils, turns): (bool, Option<TakeTurns>),
+    ) -> Result<Arc<Device>, VulkanError> {
+        let allocator = allocator_on(&instance, &raw, physical)?;
+        Ok(Arc::new(Device {
+            marking: Marking::new(CrashMarkers::default(), None, &instance.raw, &raw),
+            labels: debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &raw)),
+            raw,
+            physical,
+            queue: Mutex::new(queue),
+            turns,
+            survey,
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            live: Mutex::default(),
+            next_id: AtomicU64::new(1),
+            owned: false,
+            instance,
+        }))
+    }
+
+    #[cfg(feature = "capi")]
+    pub(super) fn is_of_host(&self) -> bool {
+        !self.owned
+    }
+
+    #[cfg(feature = "capi")]
+    pub(super) fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: the physical device belongs to the instance, which is alive.
+        unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) }
+            .optimal_tiling_features
+    }
+
+    /// Calls `submit` while nobody else submits, the host included.
+    pub(super) fn submit<R>(&self, submit: impl FnOnce(vk::Queue) -> R) -> R {
+        let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(turns) = &self.turns {
+            turns(true);
+        }
+        let done = submit(*queue);
+        if let Some(turns) = &self.turns {
+            turns(false);
+        }
+        done
     }
 
     pub(crate) fn report(&self) -> &DeviceReport {
@@ -241,15 +258,43 @@ impl Drop for Device {
         for (name, bytes) in self.live_allocations() {
             tracing::error!("leak: {name} ({bytes} bytes) outlives its device");
         }
+        if self.owned {
+            // SAFETY: nobody submits any more. Of a host's device the work of this one was waited for, frame by frame.
+            let _ = unsafe { self.raw.device_wait_idle() };
+        }
         // SAFETY: every object made on the device holds it by `Arc`, so none is left; the allocator goes first, since
         // it frees its memory blocks through the device.
-        unsafe {
-            let _ = self.raw.device_wait_idle();
-            ManuallyDrop::drop(&mut self.allocator);
+        unsafe { ManuallyDrop::drop(&mut self.allocator) };
+        if self.owned {
             let _alone = loader_lock::changing();
-            self.raw.destroy_device(None);
+            // SAFETY: as above.
+            unsafe { self.raw.destroy_device(None) };
         }
     }
+}
+
+fn allocator_on(
+    instance: &Instance,
+    raw: &ash::Device,
+    physical_device: vk::PhysicalDevice,
+) -> Result<Allocator, VulkanError> {
+    let description = AllocatorCreateDesc {
+        instance: instance.raw.clone(),
+        device: raw.clone(),
+        physical_device,
+        // Leaks are named by our own register, which also knows who is alive before shutdown.
+        debug_settings: {
+            let mut settings = gpu_allocator::AllocatorDebugSettings::default();
+            settings.log_leaks_on_shutdown = false;
+            settings
+        },
+        buffer_device_address: false,
+        allocation_sizes: gpu_allocator::AllocationSizes::default(),
+    };
+    Allocator::new(&description).map_err(|error| {
+        tracing::error!("gpu-allocator: {error}");
+        VulkanError::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, last_pass: "none".to_owned() }
+    })
 }
 
 fn extensions_of(

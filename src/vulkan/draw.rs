@@ -136,7 +136,7 @@ impl Recorder {
     }
 
     pub(crate) fn draw_indirect(&self, buffer: &Buffer, offset: u64, count: u32) {
-        let at_once = if self.device.survey.features.multi_draw_indirect == vk::TRUE { count } else { 1 };
+        let at_once = if self.device.survey.features.core.multi_draw_indirect == vk::TRUE { count } else { 1 };
         let mut first = 0;
         while first < count {
             let offset = offset + u64::from(first) * 16;

@@ -90,6 +90,9 @@ pub enum VulkanError {
     /// A shader of the folder that `IRRADIA_SHADERS` names, in a debug build, cannot be used.
     #[error("{0}")]
     Shader(String),
+    /// A host's device cannot be used.
+    #[error("the device that was handed over cannot be used: {0}")]
+    Host(String),
     /// Somebody who watches the frame stopped it.
     #[error("the frame was cancelled")]
     Cancelled,

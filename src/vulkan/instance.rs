@@ -35,8 +35,8 @@ pub(crate) struct Instance {
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     // The messenger's callback points into this.
     messages: Messages,
-    // The loaded library must outlive every function pointer taken from it.
-    _entry: ash::Entry,
+    // The loaded library must outlive every function pointer taken from it. None: the instance is a host's, which destroys it.
+    entry: Option<ash::Entry>,
 }
 
 impl Instance {
@@ -98,15 +98,22 @@ impl Instance {
         })?;
         // Dropped before the instance may be, which takes it again.
         drop(alone);
-        let mut instance = Instance { raw, debug, messenger: None, messages, _entry: entry };
+        let mut instance = Instance { raw, debug, messenger: None, messages, entry: Some(entry) };
         if validation != Validation::Off {
             instance.collect_messages()?;
         }
         Ok(instance)
     }
 
+    /// A host's.
+    #[cfg(feature = "capi")]
+    pub(super) fn of_host(raw: ash::Instance, debug: bool) -> Instance {
+        Instance { raw, debug, messenger: None, messages: Messages::default(), entry: None }
+    }
+
     fn collect_messages(&mut self) -> Result<(), VulkanError> {
-        let functions = ext::debug_utils::Instance::new(&self._entry, &self.raw);
+        let Some(entry) = &self.entry else { return Ok(()) };
+        let functions = ext::debug_utils::Instance::new(entry, &self.raw);
         let info = messages::messenger(&self.messages);
         // SAFETY: the user data is owned by `self` and outlives the messenger, which `drop` destroys first.
         let messenger =
@@ -129,6 +136,9 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
+        if self.entry.is_none() {
+            return;
+        }
         let _alone = loader_lock::changing();
         // SAFETY: the device, the only other user, is destroyed before its instance (field order in `Device`).
         unsafe {

@@ -3,8 +3,6 @@
 #![allow(unsafe_code, reason = "commands of extensions")]
 
 use std::ffi::c_void;
-use std::sync::PoisonError;
-
 use ash::{nv, vk};
 
 use super::crash_markers::Marking;
@@ -20,14 +18,13 @@ impl Device {
 
     /// The last pass of a lost device that finished, by what the driver knows of it: its slot.
     fn checkpoint(&self, checkpoints: &nv::device_diagnostic_checkpoints::Device) -> Option<usize> {
-        let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: the queue is the device's own, and locked.
-        let mut found = unsafe {
-            let count = checkpoints.get_queue_checkpoint_data_len(*queue);
+        // SAFETY: the queue is the device's own, and this call's.
+        let mut found = self.submit(|queue| unsafe {
+            let count = checkpoints.get_queue_checkpoint_data_len(queue);
             let mut found = vec![vk::CheckpointDataNV::default(); count];
-            checkpoints.get_queue_checkpoint_data(*queue, &mut found);
+            checkpoints.get_queue_checkpoint_data(queue, &mut found);
             found
-        };
+        });
         found
             .retain(|data| data.stage == vk::PipelineStageFlags::BOTTOM_OF_PIPE && !data.p_checkpoint_marker.is_null());
         found.iter().map(|data| data.p_checkpoint_marker.addr() - 1).max()

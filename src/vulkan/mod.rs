@@ -11,6 +11,13 @@ mod descriptors;
 mod device;
 mod draw;
 mod error;
+mod features;
+#[cfg(feature = "capi")]
+mod hand_out;
+#[cfg(feature = "capi")]
+mod host;
+#[cfg(feature = "capi")]
+mod host_features;
 mod instance;
 pub(crate) mod limits;
 #[cfg(debug_assertions)]
@@ -32,9 +39,15 @@ pub use crash_markers::CrashMarkers;
 pub(crate) use descriptors::{Descriptor, MaterialSets};
 pub use device::ContextOptions;
 pub(crate) use device::Device;
+#[cfg(feature = "capi")]
+pub(crate) use device::TakeTurns;
+#[cfg(feature = "capi")]
+pub(crate) use hand_out::{ForeignPlace, ForeignTarget, ForeignUse, HandOut, TimelinePoint};
 pub(crate) use draw::{Attachment, Attachments};
 pub use error::VulkanError;
 pub use instance::Validation;
+#[cfg(feature = "capi")]
+pub(crate) use host::{AnyFunction, HostDevice, HostInstance, Requirements};
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
 #[allow(unused_imports, reason = "passes of the methods to come; tests use it already")]
 pub(crate) use pipelines::StencilState;

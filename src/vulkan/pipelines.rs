@@ -383,7 +383,7 @@ impl Pipelines {
         let texture = matches!(kind, SamplerKind::Texture { .. });
         let anisotropic = texture
             && filter == vk::Filter::LINEAR
-            && self.device.survey.features.sampler_anisotropy == vk::TRUE
+            && self.device.survey.features.core.sampler_anisotropy == vk::TRUE
             && !self.device.traits().software;
         let mode =
             if filter == vk::Filter::NEAREST { vk::SamplerMipmapMode::NEAREST } else { vk::SamplerMipmapMode::LINEAR };

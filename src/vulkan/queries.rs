@@ -32,7 +32,7 @@ impl Queries {
         let timestamps =
             unsafe { device.raw.create_query_pool(&info, None) }.called("vkCreateQueryPool for timestamps")?;
         let mut queries = Queries { device: device.clone(), timestamps, statistics: None, capacity };
-        if device.survey.features.pipeline_statistics_query == vk::TRUE {
+        if device.survey.features.core.pipeline_statistics_query == vk::TRUE {
             use vk::QueryPipelineStatisticFlags as Flags;
             let flags =
                 Flags::VERTEX_SHADER_INVOCATIONS | Flags::CLIPPING_INVOCATIONS | Flags::FRAGMENT_SHADER_INVOCATIONS;

@@ -4,7 +4,7 @@
 
 use std::ffi::CString;
 use std::ops::Range;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use ash::vk;
 
@@ -116,14 +116,28 @@ impl Recorder {
 
     /// Submits what was recorded and waits until the device has done it.
     pub(crate) fn finish(&mut self) -> Result<(), VulkanError> {
+        self.finish_between(&[], &[])
+    }
+
+    /// The same, after some semaphores have been signalled, and signalling others.
+    pub(super) fn finish_between(
+        &mut self,
+        waits: &[vk::SemaphoreSubmitInfo<'_>],
+        signals: &[vk::SemaphoreSubmitInfo<'_>],
+    ) -> Result<(), VulkanError> {
         let raw = &self.device.raw;
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
-        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
-        let queue = self.device.queue.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: the command buffer was begun by `begin`; the queue is locked; the fence is unsignalled.
+        let submit = [vk::SubmitInfo2::default()
+            .command_buffer_infos(&commands)
+            .wait_semaphore_infos(waits)
+            .signal_semaphore_infos(signals)];
+        // SAFETY: the command buffer was begun by `begin`.
+        unsafe { raw.end_command_buffer(self.commands) }.called("vkEndCommandBuffer")?;
+        // SAFETY: the queue is this call's; the fence is unsignalled.
+        let submitted = self.device.submit(|queue| unsafe { raw.queue_submit2(queue, &submit, self.fence) });
+        submitted.called("vkQueueSubmit2")?;
+        // SAFETY: the fence was submitted.
         unsafe {
-            raw.end_command_buffer(self.commands).called("vkEndCommandBuffer")?;
-            raw.queue_submit2(*queue, &submit, self.fence).called("vkQueueSubmit2")?;
             raw.wait_for_fences(&[self.fence], true, u64::MAX).called("vkWaitForFences")?;
             raw.reset_fences(&[self.fence]).called("vkResetFences")
         }

@@ -6,6 +6,7 @@ use ash::vk;
 use serde::Serialize;
 
 use super::error::VulkanError;
+use super::features::Features;
 use super::instance::{Instance, Validation, version_text};
 use super::limits::{FORMATS, Offer};
 use super::traits::DeviceTraits;
@@ -34,18 +35,11 @@ pub struct DeviceReport {
     pub default: bool,
 }
 
-/// A feature irradia cannot do without, and what needs it.
-struct Requirement {
-    name: &'static str,
-    needed_by: &'static str,
-    present: bool,
-}
-
 /// What a physical device says of itself.
 pub(crate) struct Survey {
     pub(crate) report: DeviceReport,
     pub(crate) properties: vk::PhysicalDeviceProperties,
-    pub(crate) features: vk::PhysicalDeviceFeatures,
+    pub(crate) features: Features,
     pub(crate) queue_family: u32,
     pub(crate) timestamp_bits: u32,
     pub(crate) traits: DeviceTraits,
@@ -61,8 +55,7 @@ impl Survey {
         // SAFETY: the device belongs to this living instance; the chained structures live on.
         unsafe { raw.get_physical_device_properties2(device, &mut properties) };
         let properties = properties.properties;
-        // SAFETY: as above.
-        let features = unsafe { raw.get_physical_device_features(device) };
+        let features = Features::offered(instance, device);
         // SAFETY: as above.
         let families = unsafe { raw.get_physical_device_queue_family_properties(device) };
         // SAFETY: as above.
@@ -80,7 +73,7 @@ impl Survey {
             }
             (format, images)
         };
-        let offer = Offer::new(limits, &vulkan11, &features, FORMATS.iter().copied().map(features_of).collect());
+        let offer = Offer::new(limits, &vulkan11, &features.core, FORMATS.iter().copied().map(features_of).collect());
         let device_bytes: u64 = memory
             .memory_heaps_as_slice()
             .iter()
@@ -108,7 +101,7 @@ impl Survey {
                 ("timestamp period, ns".to_owned(), limits.timestamp_period.to_string()),
             ],
             lacks: Vec::new(),
-            unfit: unfit(raw, device, &properties, family.map(|family| families[family].timestamp_valid_bits)),
+            unfit: unfit(&features, &properties, family.map(|family| families[family].timestamp_valid_bits)),
             default: false,
         };
         let timestamp_bits = family.map_or(0, |family| families[family].timestamp_valid_bits);
@@ -125,33 +118,15 @@ impl Survey {
 }
 
 fn unfit(
-    raw: &ash::Instance,
-    device: vk::PhysicalDevice,
+    features: &Features,
     properties: &vk::PhysicalDeviceProperties,
     timestamp_bits: Option<u32>,
 ) -> Option<String> {
     if properties.api_version < vk::API_VERSION_1_3 {
         return Some(format!("it implements Vulkan {}, irradia needs 1.3", version_text(properties.api_version)));
     }
-    let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut vulkan13).push_next(&mut vulkan12);
-    // SAFETY: the device belongs to the living instance; the chained structures live on.
-    unsafe { raw.get_physical_device_features2(device, &mut features) };
-    let core = features.features;
-    let needs = |name, needed_by, present: vk::Bool32| Requirement { name, needed_by, present: present == vk::TRUE };
-    let requirements = [
-        needs("synchronization2", "the pass graph", vulkan13.synchronization2),
-        needs("dynamicRendering", "every raster pass", vulkan13.dynamic_rendering),
-        needs("maintenance4", "shaders with a local size by constant", vulkan13.maintenance4),
-        needs("scalarBlockLayout", "structs shared with shaders", vulkan12.scalar_block_layout),
-        needs("hostQueryReset", "timings", vulkan12.host_query_reset),
-        needs("fragmentStoresAndAtomics", "lists built while rasterising", core.fragment_stores_and_atomics),
-        needs("drawIndirectFirstInstance", "indirect draws", core.draw_indirect_first_instance),
-        needs("independentBlend", "the G-buffer", core.independent_blend),
-    ];
-    if let Some(missing) = requirements.iter().find(|requirement| !requirement.present) {
-        return Some(format!("it lacks the feature {}, which {} needs", missing.name, missing.needed_by));
+    if let Some((name, needed_by)) = features.missing() {
+        return Some(format!("it lacks the feature {name}, which {needed_by} needs"));
     }
     match timestamp_bits {
         None => Some("it has no queue for both graphics and compute".to_owned()),

@@ -106,6 +106,20 @@ fn a_c_program_uses_everything_and_sees_what_the_program_shows() {
     assert_same_picture(&file);
 }
 
+/// A device, a queue and images of the host's own; the library opens no loader, and frames come to the host without passing through its memory.
+#[test]
+fn a_cpp_program_lends_its_device_and_reads_frames_there() {
+    let host = Host::compile("c++", "cpp", &["host.cpp"], &["-std=c++17", "-rdynamic", "-O1"]);
+    let (shader, file) = (host.file("double.spv"), host.file("host.raw"));
+    let source = std::fs::read_to_string(root().join("tests/hosts/double.comp")).expect("a shader");
+    let compiler = shaderc::Compiler::new().expect("the compiler of the build");
+    let code = compiler.compile_into_spirv(&source, shaderc::ShaderKind::Compute, "double.comp", "main", None);
+    std::fs::write(&shader, code.expect("it compiles").as_binary_u8()).expect("the test's own folder");
+    let paths = [&shader, &file].map(|path| path.to_str().expect("UTF-8"));
+    succeed(host.command(&paths).env("HOST_VALIDATION", "1"));
+    assert_same_picture(&file);
+}
+
 #[test]
 fn wrong_use_is_a_status_and_a_sentence() {
     Host::c("wrong").run(&["wrong"]);
