@@ -489,21 +489,22 @@ BLUE, OCHRE, SAND = (0.12, 0.2, 0.5), (0.7, 0.42, 0.12), (0.7, 0.62, 0.5)
 GOLD = (1.0, 0.78, 0.34)
 
 
-def cornell(s, blocks=True, panel=None):
+def cornell(s, blocks=True, panel=None, floor=None, metals=None):
     """A Cornell box, 2 x 2 m and 3.6 m deep: closed, its camera inside before the front wall."""
     white, red, green = s.diffuse("white", WHITE), s.diffuse("red", RED), s.diffuse("green", GREEN)
 
     def paint(side, cell):
         if panel is not None and side == "+y" and (cell.i, cell.k) == (1, 1):
             return panel
-        return {"-x": red, "+x": green}.get(side, white)
+        return {"-x": red, "+x": green, "-y": white if floor is None else floor}.get(side, white)
 
     hole_x, hole_z = ([-0.3, 0.3], [-0.25, 0.25]) if panel is not None else ([], [])
     s.add("room", cave([-1, *hole_x, 1], [0, 2], [-1, *hole_z, 2.6], paint))
     if blocks:
-        s.add("tall block", box((-0.3, 0, -0.3), (0.3, 1.2, 0.3), without=["-y"]), white,
+        tall, short = metals or (white, white)
+        s.add("tall block", box((-0.3, 0, -0.3), (0.3, 1.2, 0.3), without=["-y"]), tall,
               at=(-0.35, 0, -0.4), rotation=turn((0, 1, 0), 17))
-        s.add("short block", box((-0.3, 0, -0.3), (0.3, 0.6, 0.3), without=["-y"]), white,
+        s.add("short block", box((-0.3, 0, -0.3), (0.3, 0.6, 0.3), without=["-y"]), short,
               at=(0.37, 0, 0.2), rotation=turn((0, 1, 0), -17))
     s.camera("camera", (0, 1, 2.5), (0, 0.97, 0), 50)
 
@@ -529,6 +530,14 @@ def cornell_spot(s):
 @scene("cornell-panel", "Cornell box lit by an emissive ceiling panel alone: emission as a light")
 def cornell_panel(s):
     cornell(s, panel=s.diffuse("panel", (0, 0, 0), emission=16.0))
+
+
+@scene("cornell-glossy", "Cornell box with a varnished floor and blocks of rough metal: glossy reflections of diffuse light")
+def cornell_glossy(s):
+    varnish = s.material("varnish", GREY, roughness=0.3)
+    cornell(s, floor=varnish, metals=(s.material("gold", GOLD, metallic=1, roughness=0.4),
+                                      s.material("steel", (0.6, 0.6, 0.62), metallic=1, roughness=0.25)))
+    s.light("lamp", "point", (0, 1.45, 0.1), intensity=3.0)
 
 
 @scene("furnace", "Closed white furnace, albedo 0.5 and emission 1: the radiance is 1/(1 - 0.5) = 2 everywhere")

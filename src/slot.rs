@@ -88,11 +88,14 @@ pub enum CausticPaths {
     /// None in what mirrors and glass show, L (D|S)* S D S⁺ E: what rays that follow reflections find of the slot `specular`. It has besides what of the slot
     /// `direct` only they find: lamps and the sky behind one surface of glass, and unlit surfaces in mirrors.
     Unmirrored,
+    /// None, and nothing else specular before the first visible surface: L D* D E and L D⁺ S E, what maps of diffusely lit surfaces can show.
+    None,
 }
 
 impl CausticPaths {
     /// All of them.
-    pub const ALL: [CausticPaths; 3] = [CausticPaths::All, CausticPaths::Specular, CausticPaths::Unmirrored];
+    pub const ALL: [CausticPaths; 4] =
+        [CausticPaths::All, CausticPaths::Specular, CausticPaths::Unmirrored, CausticPaths::None];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -100,6 +103,7 @@ impl CausticPaths {
             CausticPaths::All => "all",
             CausticPaths::Specular => "specular",
             CausticPaths::Unmirrored => "unmirrored",
+            CausticPaths::None => "none",
         }
     }
 }

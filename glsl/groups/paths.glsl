@@ -18,6 +18,8 @@ layout(constant_id = 52) const uint UNMIRRORED = 0u;
 layout(constant_id = 53) const uint MIRRORS = 0u;
 // Where there is one, scatterings at most between the light and that.
 layout(constant_id = 54) const uint BOUNCES = 0xFFFFFFFFu;
+// 1: between the lights and the first visible surface light scatters diffusely alone.
+layout(constant_id = 55) const uint DIFFUSE_ALONE = 0u;
 
 layout(set = 0, binding = 80) uniform samplerBuffer path_rays;
 layout(set = 0, binding = 81) uniform samplerBuffer path_states;

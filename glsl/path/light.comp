@@ -163,6 +163,9 @@ void main() {
         if (SPECULAR_CAUSTICS != 0u && push.depth > 1u && slot == SLOT_CAUSTICS) {
             light_of_lobes[0] = vec3(0.0);
         }
+        if (DIFFUSE_ALONE != 0u && push.depth > 0u) {
+            light_of_lobes[1] = vec3(0.0);
+        }
         if (UNMIRRORED != 0u && lights_mirrored(flags)) {
             light_of_lobes[1] = vec3(0.0);
         }

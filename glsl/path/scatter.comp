@@ -71,6 +71,9 @@ bool scatter(uint path) {
     if (SPECULAR_CAUSTICS != 0u && later && drawn.lobe == LOBE_DIFFUSE && (new_flags[path] & FLAG_SLOT_MASK) == SLOT_CAUSTICS) {
         return false;
     }
+    if (DIFFUSE_ALONE != 0u && FROM_LIGHT == 0u && push.depth > 0u && drawn.lobe == LOBE_SPECULAR) {
+        return false;
+    }
     if (UNMIRRORED != 0u && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && lights_mirrored(new_flags[path])) {
         return false;
     }

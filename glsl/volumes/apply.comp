@@ -5,10 +5,10 @@
 #include "lib/pixels.glsl"
 #include "lib/spherical_harmonics.glsl"
 #include "lib/surface_packing.glsl"
-#include "volumes/weights.glsl"
+#include "caches/weights.glsl"
 
 // The slot `diffuse` of one pixel: radiance in W/(m²·sr), L(x) = ρ/π · E(x), with ρ = indirect_diffuse_albedo() and the irradiance E at the shading normal n of the eight
-// caches around x, weighed trilinearly (Reich 2015, section 4.4) and, if asked for, by whether x sees them (volumes/weights.glsl),
+// caches around x, weighed trilinearly (Reich 2015, section 4.4) and, if asked for, by whether x sees them (caches/weights.glsl),
 //
 //   E(x) = Σ_lm A_l y_lm(n) · Σ_k w_k c_lm,k / Σ_k w_k
 //
@@ -23,7 +23,7 @@ layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D diffuse;
 layout(set = 0, binding = 2) buffer MissingBlock { uint missing[]; };
 
 layout(push_constant, scalar) uniform Push {
-    VolumeRays rays;
+    CacheRays rays;
     uint capacity;
 } push;
 

@@ -1,6 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "volumes/visibility.glsl"
+#include "caches/visibility.glsl"
 #include "volumes/light.glsl"
 
 // The light of one cache (light.glsl), each group of lights seen by a ray, or wholly.

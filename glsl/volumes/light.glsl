@@ -2,12 +2,10 @@
 #ifndef VOLUMES_LIGHT
 #define VOLUMES_LIGHT
 
-#include "groups/area_lights.glsl"
 #include "groups/light_caches.glsl"
-#include "caches/light_groups.glsl"
+#include "caches/arriving.glsl"
 #include "lib/spherical_harmonics.glsl"
-#include "lib/vpl.glsl"
-#include "volumes/rays.glsl"
+#include "caches/rays.glsl"
 
 // One group of invocations a cache: the light that comes to it from all virtual area lights, as spherical harmonics of two or three bands (Reich 2015, section 4.3.2),
 //
@@ -22,7 +20,7 @@ layout(constant_id = 0) const uint BANDS = 3u;
 layout(set = 0, binding = 0) buffer LightBlock { float light[]; };
 
 layout(push_constant, scalar) uniform Push {
-    VolumeRays rays;
+    CacheRays rays;
     int first_group;
     int end_group;
     uint capacity;
@@ -37,27 +35,6 @@ struct Sums {
     mat3x4 high;
     vec3 last;
 };
-
-// Φ/π · (n·−ω)⁺ / (d² + a), and the unit vector to the light.
-vec3 light_from(Vpl light, vec3 position_rs, out vec3 direction) {
-    vec3 difference = light.position_rs - position_rs;
-    float squared = dot(difference, difference) + 1e-20;
-    direction = difference * inversesqrt(squared);
-    return light.strength * (max(-dot(light.normal, direction), 0.0) / (squared + light.area_over_pi));
-}
-
-Vpl load_area_light(int index) {
-    return unpack_vpl(texelFetch(area_lights, 2 * index), texelFetch(area_lights, 2 * index + 1));
-}
-
-bool faces_any(LightGroup group, vec3 position_rs) {
-    bool faces = false;
-    for (int index = group.first; index < group.end && !faces; ++index) {
-        Vpl light = load_area_light(index);
-        faces = dot(light.normal, position_rs - light.position_rs) > 0.0;
-    }
-    return faces;
-}
 
 void light_cache() {
     uint self = gl_LocalInvocationIndex;

@@ -1,6 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "volumes/cone_visibility.glsl"
+#include "caches/cone_visibility.glsl"
 #include "volumes/light.glsl"
 
 // The light of one cache (light.glsl), each group of lights seen by a cone through voxels.

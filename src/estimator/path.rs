@@ -67,7 +67,7 @@ impl PathTracer {
             scatter_sums(&mut sums, &texels, view.size, [first_block, block_count]);
         }
         let scene = self.work.scene();
-        if scene.needs_light_paths(view.bounces) {
+        if view.needs_light_paths(&scene) {
             self.trace_from_lights(view, half, [first, count], &mut sums)?;
         } else {
             self.work.cost.skip("particle", "emit", NO_LIGHT_PATHS);
@@ -228,7 +228,7 @@ impl Estimating for PathTracer {
             camera_paths::advance(&mut graph, &paths, &scene, view, depth);
         }
         sums.add(&mut graph, &paths, &wave);
-        if scene.needs_light_paths(view.bounces) {
+        if view.needs_light_paths(&scene) {
             let splats = Splats::declare(&mut graph, &scene, view, limit)?;
             let swarm = Swarm { first_path: 0, path_count: paths.capacity, seed: view.seed };
             light_paths::emit(&mut graph, &paths, &scene, view, &swarm);
@@ -271,7 +271,7 @@ fn blocks_per_run(blocks: u32) -> u32 {
 /// Paths that memory is held for, when `count` samples of every pixel are taken.
 fn capacity(scene: &TracedScene, view: &View, count: u32) -> u32 {
     let paths = 64 * blocks_per_run(view.size[0].div_ceil(8) * view.size[1].div_ceil(8));
-    let per_pixel = if scene.needs_light_paths(view.bounces) { LIGHT_PATHS_PER_PIXEL } else { 1 };
+    let per_pixel = if view.needs_light_paths(scene) { LIGHT_PATHS_PER_PIXEL } else { 1 };
     paths * (WAVE_PATHS / paths).clamp(1, count.saturating_mul(per_pixel).max(1))
 }
 

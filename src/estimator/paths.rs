@@ -54,6 +54,8 @@ pub(super) struct Variants {
     pub(super) specular_caustics: u32,
     /// The slot `specular` leaves out caustics, and has lamps behind the first surface's glass.
     pub(super) unmirrored: u32,
+    /// Between the lights and the first visible surface light scatters diffusely alone.
+    pub(super) diffuse_alone: u32,
     /// Reflections and refractions between the eye and what mirrors show at most, and scatterings from there on; 0: they are scatterings like others.
     pub(super) mirrors: u32,
     pub(super) bounces: u32,
@@ -62,10 +64,11 @@ pub(super) struct Variants {
 impl Variants {
     fn of(scene: &TracedScene, view: &View) -> Variants {
         Variants {
-            light_paths: u32::from(scene.needs_light_paths(view.bounces)),
+            light_paths: u32::from(view.needs_light_paths(scene)),
             photons: 0,
             specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
             unmirrored: u32::from(view.caustics == CausticPaths::Unmirrored),
+            diffuse_alone: u32::from(view.caustics == CausticPaths::None),
             mirrors: view.mirrors.unwrap_or(0),
             bounces: view.bounces.unwrap_or(u32::MAX),
         }
@@ -150,6 +153,7 @@ impl Paths {
             photons: self.variants.photons,
             specular_caustics: self.variants.specular_caustics,
             unmirrored: self.variants.unmirrored,
+            diffuse_alone: self.variants.diffuse_alone,
             mirrors: self.variants.mirrors,
             bounces: self.variants.bounces,
         }

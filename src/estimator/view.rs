@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::frame::camera::camera;
+use crate::frame::rays::TracedScene;
 use crate::scene::CameraView;
 use crate::shaders::types;
 use crate::slot::{CausticPaths, PixelFilter};
@@ -59,6 +60,11 @@ impl View {
     /// Scatterings of the camera's paths beyond the first visible surface at most.
     pub(super) fn camera_bounces(&self) -> Option<u32> {
         self.bounces.map(|bounces| bounces.saturating_add(self.mirrors.unwrap_or(0)))
+    }
+
+    /// Whether lights send out paths: they find what specular surfaces light.
+    pub(super) fn needs_light_paths(&self, scene: &TracedScene) -> bool {
+        self.caustics != CausticPaths::None && scene.needs_light_paths(self.bounces)
     }
 
     /// Light paths of the path tracer a sample.

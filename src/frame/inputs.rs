@@ -1,5 +1,6 @@
 //! What all methods share of a frame.
 
+use super::caches::CacheSettings;
 use super::gbuffer::GBuffer;
 use super::geometry::Geometry;
 use super::light_set::LightSet;
@@ -31,6 +32,8 @@ pub(crate) struct FrameInputs<'f> {
     pub(crate) time: FrameTime,
     pub(crate) surface: &'f GBuffer,
     pub(crate) set: &'f LightSet,
+    /// Those of light caches, for methods that take these as `volumes` has them.
+    pub(crate) caches: CacheSettings,
     /// Present where some method takes them and something shines.
     pub(crate) lights: Option<LightViews>,
     pub(crate) traced: Option<&'f TracedScene>,

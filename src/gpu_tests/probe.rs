@@ -14,9 +14,10 @@ use crate::graph::bindings::ImageRef;
 use crate::graph::{Graph, ReadBack};
 use crate::method::{FrameCx, Rays};
 use crate::renderer::declare::{Shared, inputs_of, wanted_methods};
-use crate::renderer::{DiffuseMethod, FrameRequest, Settings, Slot, Timing};
+use crate::renderer::{DiffuseMethod, FrameRequest, Settings, Slot, SpecularMethod, Timing};
 use crate::scene::{Bounds, Scene};
 use crate::shaders::types;
+use crate::specular::radiance_maps;
 
 /// The scene and its lights as the device has them.
 pub(super) struct Probe {
@@ -33,6 +34,7 @@ pub(super) struct Declared {
     pub(super) rsm: Option<rsm::Made>,
     pub(super) volumes: Option<volumes::Made>,
     pub(super) vpl: Option<vpl::Made>,
+    pub(super) maps: Option<radiance_maps::Made>,
     slots: Vec<(Slot, ImageRef)>,
 }
 
@@ -69,6 +71,7 @@ pub(super) fn probe(
         rsm: None,
         volumes: None,
         vpl: None,
+        maps: None,
         slots: Vec::new(),
     };
     for wanted in methods.iter().filter(|wanted| wanted.skipped.is_none()) {
@@ -82,6 +85,9 @@ pub(super) fn probe(
             }
             DiffuseMethod::Vpl if wanted.method.slot == Slot::Diffuse => {
                 Some(declared.vpl.insert(vpl::vpl(cx, &settings.vpl)).diffuse)
+            }
+            _ if wanted.method.slot == Slot::Specular && settings.methods.specular == SpecularMethod::RadianceMaps => {
+                Some(declared.maps.insert(radiance_maps::radiance_maps(cx, &settings.radiance_maps)).specular)
             }
             _ => (wanted.method.declare)(cx, settings).expect("the device allows it"),
         };

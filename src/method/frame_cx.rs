@@ -2,11 +2,14 @@
 
 use std::rc::Rc;
 
+use crate::frame::caches::{AreaLights, CacheSettings, Caches, allocate, area_lights};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::light_views::LightViews;
 use crate::frame::rays::TracedScene;
 use crate::frame::voxels::{VoxelSettings, Voxels, voxels};
 use crate::graph::Graph;
+use crate::shaders::groups::SceneRays;
+use crate::shaders::types::CacheRays;
 
 /// What a method takes of a frame, besides the G-buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +21,8 @@ pub(crate) struct Inputs {
     pub(crate) rays: Rays,
     /// The diffuse light at what mirrors show, if the method of the slot `diffuse` offers it.
     pub(crate) mirrored_light: bool,
+    /// Light caches as `volumes` has them, and what these take themselves.
+    pub(crate) caches: bool,
     /// All slots: it makes better ones of them ([`super::Method::refine`]).
     pub(crate) slots: bool,
 }
@@ -30,6 +35,7 @@ impl Inputs {
             light_flux: self.light_flux || other.light_flux,
             rays: self.rays.max(other.rays),
             mirrored_light: self.mirrored_light || other.mirrored_light,
+            caches: self.caches || other.caches,
             slots: self.slots || other.slots,
         }
     }
@@ -66,6 +72,24 @@ impl<'f, 's> FrameCx<'f, 's> {
     /// The scene as rays meet it, for a method that sends rays.
     pub(crate) fn rays(&self) -> Option<&'f TracedScene> {
         self.frame.traced.filter(|_| self.inputs.rays != Rays::None)
+    }
+
+    /// The lights that shine on light caches; methods that ask alike share them.
+    pub(crate) fn area_lights(&mut self, settings: &CacheSettings) -> Rc<AreaLights> {
+        self.shared(settings.lights, |cx, rule| area_lights(cx.graph, cx.frame.set, cx.lights(), rule))
+    }
+
+    /// Light caches; methods that ask alike share them.
+    pub(crate) fn caches(&mut self, settings: &CacheSettings) -> Rc<Caches> {
+        let rule = (settings.cascades, settings.moves);
+        self.shared(rule, |cx, (rule, moves)| allocate(cx.graph, cx.frame, rule, *moves))
+    }
+
+    /// The scene as rays to and from light caches meet it; absent in a frame whose method sends none.
+    pub(crate) fn cache_rays(&mut self) -> (SceneRays, CacheRays) {
+        let Some(traced) = self.rays() else { return (SceneRays::absent(), CacheRays { shift: [0.0; 3] }) };
+        let shift = (self.frame.data.origin - traced.origin).as_vec3().to_array();
+        (traced.rays(self.graph), CacheRays { shift })
     }
 
     /// The scene as voxels; methods that ask alike share them.

@@ -21,6 +21,7 @@ macro_rules! for_all_methods {
                 photons => Photons(PhotonOptions),
             }
             specular {
+                radiance_maps => RadianceMaps(RadianceMapsOptions),
                 trace => Trace(TraceOptions),
             }
             estimator {

@@ -153,6 +153,7 @@ impl Shared {
             time: self.time,
             surface: &self.surface,
             set,
+            caches: settings.volumes.cache_settings(),
             lights,
             traced,
             offers: Offers::default(),

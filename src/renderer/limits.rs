@@ -60,7 +60,7 @@ fn of_inputs(inputs: Inputs) -> &'static [&'static str] {
 fn filler(settings: &Settings, slot: Slot, software: bool) -> Option<(&'static str, Vec<&'static str>)> {
     match settings.methods.filler(slot)? {
         Filler::Method(method) => {
-            let mut shaders = (method.shaders)(settings, software);
+            let mut shaders = method.programs(settings, software);
             shaders.extend(of_inputs((method.inputs)(settings)));
             Some((method.name, shaders))
         }

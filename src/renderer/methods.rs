@@ -5,8 +5,10 @@ use std::sync::Arc;
 use super::choices::{DirectMethod, Methods};
 use super::settings::Settings;
 use crate::estimator::{Estimating, Estimator, Samples};
+use crate::frame::caches::CacheSight;
+use crate::frame::voxels;
 use crate::graph::bindings::ImageRef;
-use crate::method::{Error, FrameCx, Inputs, Method, for_all_methods};
+use crate::method::{Error, FrameCx, Inputs, Method, Rays, for_all_methods};
 use crate::scene::Facts;
 use crate::slot::{CausticPaths, LightPaths, PixelFilter, Slot};
 use crate::vulkan::{Pipelines, VulkanError};
@@ -56,13 +58,36 @@ pub(crate) enum Filler {
     Estimator(&'static EstimatorEntry),
 }
 
+/// What a method takes, and what light caches take that it lights.
+fn with_caches(inputs: Inputs, settings: &Settings) -> Inputs {
+    if !inputs.caches {
+        return inputs;
+    }
+    let rays = if settings.volumes.cache_settings().traces() { Rays::ToSurfaces } else { Rays::None };
+    inputs.and(Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() })
+}
+
+impl MethodEntry {
+    /// The programs that the method may run, those of light caches that it lights included.
+    pub(super) fn programs(&self, settings: &Settings, software: bool) -> Vec<&'static str> {
+        let mut shaders = (self.shaders)(settings, software);
+        if (self.inputs)(settings).caches {
+            shaders.push("caches/*");
+            if let CacheSight::Cones(voxel_settings) = settings.volumes.cache_settings().sight {
+                shaders.extend(voxels::shaders(&voxel_settings));
+            }
+        }
+        shaders
+    }
+}
+
 macro_rules! entries {
     ($slot:ident { $($module:ident => $method:ident($options:ident),)* }) => {
         &[$(MethodEntry {
             slot: <crate::$slot::$module::$method as Method>::SLOT,
             name: <crate::$slot::$module::$method as Method>::NAME,
             light_paths: |settings| <crate::$slot::$module::$method as Method>::light_paths(&settings.$module),
-            inputs: |settings| <crate::$slot::$module::$method as Method>::inputs(&settings.$module),
+            inputs: |settings| with_caches(<crate::$slot::$module::$method as Method>::inputs(&settings.$module), settings),
             skip: |settings, facts| <crate::$slot::$module::$method as Method>::skip(&settings.$module, facts),
             reduced: |settings| <crate::$slot::$module::$method as Method>::reduced(&settings.$module),
             lead_in: |settings| <crate::$slot::$module::$method as Method>::lead_in(&settings.$module),
@@ -109,7 +134,7 @@ pub(super) fn all_methods(
     of_inputs: fn(Inputs) -> &'static [&'static str],
 ) -> Vec<(&'static str, Vec<&'static str>)> {
     let methods = [DIRECT, DIFFUSE, CAUSTICS, SPECULAR].into_iter().flatten().map(|method| {
-        let mut shaders = (method.shaders)(settings, software);
+        let mut shaders = method.programs(settings, software);
         shaders.extend(of_inputs((method.inputs)(settings)));
         (method.name, shaders)
     });

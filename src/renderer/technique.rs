@@ -59,8 +59,8 @@ techniques! {
     Hybrid, "hybrid" { diffuse: DiffuseMethod::Vpl, caustics: CausticsMethod::Photons } {
         high: "lights.resolution" = 512, "shadow.filter_radius" = 1;
     }
-    /// Light caches around what the camera sees, lit by virtual area lights (Reich 2015). No specular light yet.
-    Volumes, "volumes" { diffuse: DiffuseMethod::Volumes }
+    /// Light caches around what the camera sees, lit by virtual area lights (Reich 2015): diffuse light, and glossy reflections of it.
+    Volumes, "volumes" { diffuse: DiffuseMethod::Volumes, specular: SpecularMethod::RadianceMaps }
     /// Light between area particles along links that were traced once (Chang, Park & Ihm), direct light by rays: geometry takes seconds, lights and
     /// camera move freely.
     Particles, "particles" { direct: DirectMethod::Traced, diffuse: DiffuseMethod::Particles, specular: SpecularMethod::Trace }

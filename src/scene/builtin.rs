@@ -26,6 +26,7 @@ builtins! {
     "cornell-point" => "cornell-point.glb",
     "cornell-spot" => "cornell-spot.glb",
     "cornell-panel" => "cornell-panel.glb",
+    "cornell-glossy" => "cornell-glossy.glb",
     "corridor" => "corridor.glb",
     "two-rooms" => "two-rooms.glb",
     "leak" => "leak.glb",

@@ -3,13 +3,12 @@
 use ash::vk;
 
 use super::options::{VolumesOptions, VolumesWeights};
-use super::rays::rays_of;
 use crate::frame::caches::Caches;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::FrameCx;
 use crate::shaders::volumes::{Apply, ApplyPush};
 
-/// The kinds of glsl/volumes/weights.glsl.
+/// The kinds of glsl/caches/weights.glsl.
 fn kind_of(weights: VolumesWeights) -> u32 {
     match weights {
         VolumesWeights::Trilinear => 0,
@@ -24,7 +23,7 @@ pub(super) fn apply(
     light: BufferRef<f32>,
     options: &VolumesOptions,
 ) -> ImageRef {
-    let (scene_rays, rays) = rays_of(cx);
+    let (scene_rays, rays) = cx.cache_rays();
     let (graph, surface) = (&mut *cx.graph, cx.frame.surface);
     let diffuse = graph.image("volumes.diffuse", vk::Format::R32G32B32A32_SFLOAT, surface.size);
     let missing = graph.buffer::<u32>("volumes.missing", 1);

@@ -1,7 +1,6 @@
 //! The light of all virtual area lights at all caches.
 
 use super::options::{VolumesOptions, VolumesVisibility};
-use super::rays::rays_of;
 use crate::frame::caches::{AreaLights, Caches};
 use crate::graph::bindings::BufferRef;
 use crate::method::FrameCx;
@@ -39,7 +38,7 @@ pub(super) fn light(
     caches: &Caches,
     options: &VolumesOptions,
 ) -> BufferRef<f32> {
-    let (scene, rays) = rays_of(cx);
+    let (scene, rays) = cx.cache_rays();
     let voxels = (options.visibility == VolumesVisibility::Cones).then(|| cx.voxels(&options.voxel_settings()));
     let graph = &mut *cx.graph;
     let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);

@@ -8,14 +8,13 @@
 mod apply;
 mod light;
 pub(crate) mod options;
-mod rays;
 #[cfg(test)]
 mod tests;
 
 use std::rc::Rc;
 
-use self::options::{VolumesOptions, VolumesPlacement, VolumesVal, VolumesVisibility, VolumesWeights};
-use crate::frame::caches::{AreaLights, Caches, CascadeRule, LightRule, allocate, area_lights};
+use self::options::{VolumesOptions, VolumesVisibility, VolumesWeights};
+use crate::frame::caches::AreaLights;
 use crate::frame::voxels;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
@@ -63,21 +62,10 @@ pub(crate) struct Made {
     pub(crate) lights: Rc<AreaLights>,
 }
 
-fn light_rule(options: &VolumesOptions) -> LightRule {
-    LightRule { side: options.lights, lod: options.lod, paper: options.val == VolumesVal::Paper }
-}
-
-/// The grid, and whether caches leave it.
-fn cache_rule(options: &VolumesOptions) -> (CascadeRule, bool) {
-    let rule = CascadeRule { count: options.cascades, resolution: options.resolution, cell: options.cell };
-    (rule, options.placement == VolumesPlacement::Visible)
-}
-
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn volumes(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Made {
-    let lights = cx.shared(light_rule(options), |cx, rule| area_lights(cx.graph, cx.frame.set, cx.lights(), rule));
-    let caches: Rc<Caches> =
-        cx.shared(cache_rule(options), |cx, (rule, moves)| allocate(cx.graph, cx.frame, rule, *moves));
+    let settings = options.cache_settings();
+    let (lights, caches) = (cx.area_lights(&settings), cx.caches(&settings));
     let light = light::light(cx, &lights, &caches, options);
     let diffuse = apply::apply(cx, &caches, light, options);
     Made { diffuse, lights }

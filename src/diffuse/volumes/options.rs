@@ -1,5 +1,6 @@
 //! Options of `volumes`.
 
+use crate::frame::caches::{CacheSettings, CacheSight, CascadeRule, LightRule};
 use crate::frame::voxels::{VoxelSettings, Voxelisation};
 use crate::method::{OptionKind, choices, options};
 
@@ -120,6 +121,21 @@ options! {
 }
 
 impl VolumesOptions {
+    /// The caches, which other methods may light too.
+    pub(crate) fn cache_settings(&self) -> CacheSettings {
+        CacheSettings {
+            lights: LightRule { side: self.lights, lod: self.lod, paper: self.val == VolumesVal::Paper },
+            cascades: CascadeRule { count: self.cascades, resolution: self.resolution, cell: self.cell },
+            moves: self.placement == VolumesPlacement::Visible,
+            sight: match self.visibility {
+                VolumesVisibility::None => CacheSight::Open,
+                VolumesVisibility::Rays => CacheSight::Rays,
+                VolumesVisibility::Cones => CacheSight::Cones(self.voxel_settings()),
+            },
+            weighs_by_rays: self.weights == VolumesWeights::Rays,
+        }
+    }
+
     /// The voxels that cones pass through.
     pub(super) fn voxel_settings(&self) -> VoxelSettings {
         VoxelSettings {

@@ -27,6 +27,9 @@ pub(crate) struct Caches {
     pub(crate) group: LightCaches,
     /// Words 0 to 2: work groups of one cache each; word 3: how many there are.
     pub(crate) head: BufferRef<u32>,
+    /// Where they lie, in render space.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) positions: BufferRef<[f32; 4]>,
     /// How many there is room for.
     pub(crate) capacity: u32,
 }
@@ -90,7 +93,7 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
         cache_positions: positions.texels(FLOATS),
         cache_addresses: addresses.texels(WORD),
     };
-    Caches { group, head: nodes.head, capacity: nodes.capacity() }
+    Caches { group, head: nodes.head, positions, capacity: nodes.capacity() }
 }
 
 /// Where the caches lie.

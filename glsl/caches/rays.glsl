@@ -1,8 +1,8 @@
 // Rays to and from light caches: where the scene that rays meet lies.
-#ifndef VOLUMES_RAYS
-#define VOLUMES_RAYS
+#ifndef CACHES_RAYS
+#define CACHES_RAYS
 
-struct VolumeRays {
+struct CacheRays {
     vec3 shift;  // from render space to the rays' space
 };
 

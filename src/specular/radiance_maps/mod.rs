@@ -1,0 +1,106 @@
+//! `radiance-maps`: glossy reflections of what lights shine on, from a map of directions at each light cache (Reich 2015, sections 4.3.3 and 4.4).
+//!
+//! 1. Caches and virtual area lights are those of `volumes` (`frame/caches/`): made once for both.
+//! 2. `maps.rs`: caches around specular surfaces get maps, which all lights are written to, and these their levels.
+//! 3. `apply.rs`: every pixel looks its eight caches' maps up as wide as its lobe is.
+//!
+//! It finds L D S E alone: light that one diffuse surface scattered. Mirrors in mirrors, caustics in mirrors and further bounces are missing.
+
+mod apply;
+mod maps;
+pub(crate) mod options;
+mod tables;
+
+use std::rc::Rc;
+
+use self::maps::Maps;
+use self::options::{RadianceMapsFill, RadianceMapsLobe, RadianceMapsLookup, RadianceMapsOptions, RadianceMapsWrite};
+#[cfg(test)]
+pub(crate) use self::tables::direction_of_texel;
+use crate::frame::caches::AreaLights;
+use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::method::{Error, FrameCx, Inputs, Method};
+use crate::scene::Facts;
+use crate::slot::{CausticPaths, LightPaths, Slot};
+
+/// Maps of incoming light at light caches.
+pub(crate) struct RadianceMaps;
+
+impl Method for RadianceMaps {
+    const NAME: &'static str = "radiance-maps";
+    const SLOT: Slot = Slot::Specular;
+    type Options = RadianceMapsOptions;
+
+    fn light_paths(_: &RadianceMapsOptions) -> LightPaths {
+        LightPaths { bounces: Some(1), caustics: CausticPaths::None, mirrors: None }
+    }
+
+    fn inputs(_: &RadianceMapsOptions) -> Inputs {
+        Inputs { caches: true, ..Inputs::default() }
+    }
+
+    fn shaders(_: &RadianceMapsOptions, _: bool) -> Vec<&'static str> {
+        vec!["radiance_maps/*"]
+    }
+
+    fn skip(_: &RadianceMapsOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.specular, facts.diffuse) {
+            (false, _) => Some("no specular surface"),
+            (_, false) => Some("no diffuse surface"),
+            _ => None,
+        }
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &RadianceMapsOptions) -> Result<Option<ImageRef>, Error> {
+        Ok(Some(radiance_maps(cx, options).specular))
+    }
+}
+
+/// The slot, and what is behind it.
+pub(crate) struct Made {
+    pub(crate) specular: ImageRef,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) maps: Maps,
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) lights: Rc<AreaLights>,
+    /// Where all caches lie.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
+    pub(crate) positions: BufferRef<[f32; 4]>,
+}
+
+/// Declares the method's passes in the order in which they run.
+pub(crate) fn radiance_maps(cx: &mut FrameCx<'_, '_>, options: &RadianceMapsOptions) -> Made {
+    let settings = cx.frame.caches;
+    let (lights, caches) = (cx.area_lights(&settings), cx.caches(&settings));
+    let maps = maps::maps(cx, &lights, &caches, options);
+    let specular = apply::apply(cx, &caches, &maps, options);
+    Made { specular, maps, lights, positions: caches.positions }
+}
+
+impl RadianceMapsOptions {
+    /// Maps are summed up in shared memory, of which every device has 16 kB: enough for 32² and the levels above.
+    fn is_cached(&self) -> bool {
+        self.write == RadianceMapsWrite::Cached && self.size <= 32
+    }
+
+    /// The kinds of glsl/radiance_maps/mips.comp.
+    fn fill_kind(&self) -> u32 {
+        match self.fill {
+            RadianceMapsFill::None => 0,
+            RadianceMapsFill::PullPush => 1,
+            RadianceMapsFill::Footprint => 2,
+        }
+    }
+
+    /// The kinds of glsl/radiance_maps/lobes.glsl.
+    fn lobe_kind(&self) -> u32 {
+        match self.lobe {
+            RadianceMapsLobe::BlinnPhong => 0,
+            RadianceMapsLobe::Ggx => 1,
+        }
+    }
+
+    fn follows_mirror(&self) -> u32 {
+        u32::from(self.lookup == RadianceMapsLookup::Mirror)
+    }
+}
