@@ -49,6 +49,7 @@ mod photons_emit;
 mod photons_land;
 mod photons_probe;
 mod pieces;
+mod points;
 mod probe;
 mod raster;
 mod rays;

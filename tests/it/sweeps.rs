@@ -63,6 +63,7 @@ fn the_grids_that_are_checked_in_are_sound() {
         ("particles-growth-scenes", 14),
         ("reich", 50),
         ("reich-pixels", 3),
+        ("larsen", 44),
     ];
     for (name, count) in counts {
         let path = format!("sweeps/{name}.toml");
