@@ -4,15 +4,13 @@
 //   3        the level
 //   4        photons that each block of it gets at least
 //   5        photons that are sent out
-//   6 to 8   arguments of an indirect dispatch over them, 64 a group
-//   9        blocks that get photons
+//   6        blocks that get photons
 #ifndef PHOTONS_CHOICE
 #define PHOTONS_CHOICE
 
 const uint CHOICE_LEVEL = 3u;
 const uint CHOICE_OF_BLOCK = 4u;
 const uint CHOICE_PHOTONS = 5u;
-const uint CHOICE_EMIT = 6u;
-const uint CHOICE_BLOCKS = 9u;
+const uint CHOICE_BLOCKS = 6u;
 
 #endif

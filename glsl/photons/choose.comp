@@ -1,24 +1,20 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "photons/choice.glsl"
-#include "photons/records.glsl"
 
 // Chooses how finely light is cut into photons (Quyen 2014, section 3.3.1.1): the finest level of the mask's pyramid on which no more blocks
 // than there may be photons are not empty, and all photons that there may be shared evenly among these (photons/shares.glsl). The paper sends
-// one photon a block, which uses a quarter of what is allowed at worst. Empties the counts of all stages.
+// one photon a block, which uses a quarter of what is allowed at worst.
 
 layout(local_size_x = 1) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer levels;
 layout(set = 0, binding = 1) readonly buffer PyramidBlock { uint pyramid[]; };
 layout(set = 0, binding = 2) writeonly buffer ChoiceBlock { uint choice[]; };
-layout(set = 0, binding = 3) writeonly buffer CountBlock { uint counts[]; };
-layout(set = 0, binding = 4) writeonly buffer ArrivalCountBlock { uint arrival_counts[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint level_count;
-    uint most;         // photons
-    uint stage_count;  // of `counts`
+    uint most;  // photons
 } push;
 
 #include "photons/pyramid.glsl"
@@ -31,24 +27,11 @@ void main() {
     uint blocks = min(pyramid[level], push.most);
     uint photons = blocks > 0u ? push.most : 0u;
     Level chosen = load_level(level);
-    uint groups = (photons + 63u) / 64u;
     choice[0] = uint(chosen.size.x + 31) / 32u;
     choice[1] = photons > 0u ? uint(chosen.size.y + 31) / 32u : 0u;
     choice[2] = 1u;
     choice[CHOICE_LEVEL] = level;
     choice[CHOICE_OF_BLOCK] = blocks > 0u ? push.most / blocks : 0u;
     choice[CHOICE_PHOTONS] = photons;
-    choice[CHOICE_EMIT] = groups;
-    choice[CHOICE_EMIT + 1u] = 1u;
-    choice[CHOICE_EMIT + 2u] = 1u;
     choice[CHOICE_BLOCKS] = blocks;
-    [[dont_unroll]] for (uint stage = 0u; stage < push.stage_count; ++stage) {
-        const uint[STAGE_WORDS] empty = uint[STAGE_WORDS](0u, 1u, 1u, 0u, 6u, 0u, 0u, 0u);
-        [[dont_unroll]] for (uint word = 0u; word < STAGE_WORDS; ++word) {
-            counts[stage * STAGE_WORDS + word] = empty[word];
-            bool first = stage == 0u && word == 0u;
-            bool counted = stage == 0u && word == COUNT_WORD;
-            arrival_counts[stage * STAGE_WORDS + word] = first ? groups : counted ? photons : empty[word];
-        }
-    }
 }

@@ -40,6 +40,8 @@ layout(set = 0, binding = 10) writeonly buffer BeamBlock { vec4 arrival_beams[];
 layout(push_constant, scalar) uniform Push {
     uint tiles_per_row;
     float radius;  // of the scene, m
+    uint first;    // of the turn: photons of this number, and every `stride`-th from there on
+    uint stride;
 } push;
 
 #include "photons/pyramid.glsl"
@@ -129,7 +131,8 @@ bool is_outline(LightView view, ivec2 texel, ivec2 step) {
 }
 
 void main() {
-    uint photon = gl_GlobalInvocationID.x;
+    uint arrival = gl_GlobalInvocationID.x;
+    uint photon = push.first + push.stride * arrival;
     uint photons = texelFetch(choice, int(CHOICE_PHOTONS)).x;
     if (photon >= photons) {
         return;
@@ -174,9 +177,9 @@ void main() {
     bool refracts = is_closed && material.ior > 0.0 && surface.w != 0u;
     float relative_ior = !refracts ? 1.0 : front ? material.ior : 1.0 / material.ior;
     uint bits = is_closed && !front ? PHOTON_INSIDE : 0u;
-    arrivals[3u * photon] = uvec4(floatBitsToUint(position), floatBitsToUint(lit_way));
-    arrivals[3u * photon + 1u] = uvec4(floatBitsToUint(normalize(ray)), bits);
-    arrivals[3u * photon + 2u] = uvec4(floatBitsToUint(flux), number);
+    arrivals[3u * arrival] = uvec4(floatBitsToUint(position), floatBitsToUint(lit_way));
+    arrivals[3u * arrival + 1u] = uvec4(floatBitsToUint(normalize(ray)), bits);
+    arrivals[3u * arrival + 2u] = uvec4(floatBitsToUint(flux), number);
     // Views round the corners of what they draw to 1/256 of a texel.
     float gap = gap_at(position, 0.0) + texel_width / 64.0;
     // One photon to the next.
@@ -201,12 +204,12 @@ void main() {
         bent += change * (dot(point.tangent - middle, step) / dot(step, step));
     }
     vec4 beam[3] = pack_beam(Beam(origin_change[0], origin_change[1], direction_change[0], direction_change[1]));
-    uint texel_of_beam = ARRIVAL_BEAM_TEXELS * photon;
+    uint texel_of_beam = ARRIVAL_BEAM_TEXELS * arrival;
     arrival_beams[texel_of_beam] = beam[0];
     arrival_beams[texel_of_beam + 1u] = beam[1];
     arrival_beams[texel_of_beam + 2u] = beam[2];
     arrival_beams[texel_of_beam + 3u] = vec4(normals[0], normals[1].x);
     arrival_beams[texel_of_beam + 4u] = vec4(normals[1].yz, 0.0, 0.0);
-    surfaces[2u * photon] = surface;
-    surfaces[2u * photon + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), pack_direction(normalize(bent)));
+    surfaces[2u * arrival] = surface;
+    surfaces[2u * arrival + 1u] = uvec4(layer.x, floatBitsToUint(relative_ior), floatBitsToUint(gap), pack_direction(normalize(bent)));
 }

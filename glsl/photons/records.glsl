@@ -1,4 +1,4 @@
-// The records of photons on their way (src/caustics/photons/records.rs), in texels of four words:
+// The records of photons on their way (src/frame/photons/records.rs), in texels of four words:
 //
 //   rays     3   origin in render space, moved off its surface | way so far in m
 //                direction (unit) | PHOTON_ bits

@@ -1,5 +1,5 @@
 // How M photons are shared among N ≤ M blocks as evenly as whole numbers can be: block r gets those from number ⌊r·M/N⌋ on, up to the first of
-// the next. M, N < 2²¹ (src/caustics/photons/mod.rs).
+// the next. M, N < 2²¹ (src/frame/photons/records.rs).
 #ifndef PHOTONS_SHARES
 #define PHOTONS_SHARES
 

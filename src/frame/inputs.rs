@@ -44,3 +44,10 @@ pub(crate) struct FrameInputs<'f> {
     /// Whether somebody follows reflections.
     pub(crate) follows_reflections: bool,
 }
+
+impl FrameInputs<'_> {
+    /// The views from the lights, for what takes them.
+    pub(crate) fn light_views(&self) -> &LightViews {
+        self.lights.as_ref().expect("made for every method that takes them, where something shines")
+    }
+}

@@ -20,6 +20,7 @@ pub(crate) mod materials;
 pub(crate) mod mirrored;
 pub(crate) mod octahedral;
 pub(crate) mod offers;
+pub(crate) mod photons;
 mod plane_depth;
 pub(crate) mod rays;
 pub(crate) mod regions;

@@ -170,7 +170,12 @@ fn what_is_said_to_be_written_whole_is() {
         settings.methods.set(Slot::Specular, "trace").expect("a method");
         (settings.vpl.count, settings.trace.supersamples) = (32, 4);
     });
+    let points = Settings::new(Technique::Direct, Preset::Draft).with(|settings| {
+        settings.methods.set(Slot::Caustics, "points").expect("a method");
+        (settings.points.photons, settings.points.frames) = (700, 3);
+    });
     let frames = [
+        ("ring", points),
         ("lights", supersampled),
         ("ring", hybrid(&[("photons.downscale", "2"), ("vpl.bounces", "2"), ("vpl.visibility", "traced")])),
         ("ring", hybrid(&[("photons.splat", "tiles"), ("vpl.visibility", "ism"), ("photons.trace", "march")])),

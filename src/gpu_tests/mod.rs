@@ -50,6 +50,7 @@ mod photons_emit;
 mod photons_land;
 mod photons_probe;
 mod pieces;
+mod points;
 mod probe;
 mod radiance_maps;
 mod raster;

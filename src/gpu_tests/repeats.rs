@@ -73,6 +73,8 @@ fn a_resource_that_is_gone_is_made_again() {
     let lists = [("photons.trace", "march"), ("photons.resolution", "32"), ("vpl.visibility", "ism")];
     let mut ambient = small(Technique::Direct, &[("ambient.rays", "4")]);
     ambient.methods.set(Slot::Diffuse, "ambient").expect("a method");
+    let mut points = small(Technique::Direct, &[("points.photons", "300"), ("points.frames", "3")]);
+    points.methods.set(Slot::Caustics, "points").expect("a method");
     let mut mirrors = small(Technique::Hybrid, &[]);
     mirrors.methods.set(Slot::Specular, "trace").expect("a method");
     let all = [
@@ -82,6 +84,7 @@ fn a_resource_that_is_gone_is_made_again() {
         ("ring", small(Technique::Hybrid, &lists)),
         ("cornell-point", small(Technique::Path, &[("path.spp", "1")])),
         ("cornell-point", ambient),
+        ("ring", points),
         ("ring", mirrors.clone()),
         ("ring", mirrors.with(|mirrors| mirrors.trace.supersamples = 4)),
     ];

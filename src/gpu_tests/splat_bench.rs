@@ -6,14 +6,15 @@ use glam::{DVec3, Vec3};
 
 use super::scenes::{floor, lambert, view};
 use super::session::Session;
-use crate::caustics::photons::records::LandedPhotons;
 use crate::caustics::photons::splat::{SplatInputs, splat};
 use crate::caustics::photons::sums::TILES_AT_ONCE;
 use crate::frame::camera::camera;
-use crate::frame::gbuffer::{View, gbuffer};
+use crate::frame::gbuffer::{GBuffer, View, gbuffer};
 use crate::frame::geometry::Geometry;
 use crate::frame::octahedral::pack_direction;
+use crate::frame::photons::records::LandedPhotons;
 use crate::frame::scene_data::SceneData;
+use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::graph::{Dependence, Graph, Store};
 use crate::renderer::options::PhotonOptions;
 use crate::renderer::{PassTiming, Preset, Settings, Technique, Timing};
@@ -56,6 +57,35 @@ impl<'s> Bench<'s> {
         photons: &[Landed],
         timing: Timing,
     ) -> (Vec<DVec3>, Vec<PassTiming>) {
+        let count = photons.len() as u32;
+        let counts = [count.div_ceil(64), 1, 1, count, 6, count, 0, 0];
+        let (ratio, towards) = self.squeeze;
+        let ellipses = photons.iter().map(|photon| {
+            let direction = towards.reject_from(photon.normal).normalize_or_zero().as_vec3();
+            direction.extend((photon.radius * ratio) as f32).to_array()
+        });
+        let ellipses: Vec<[f32; 4]> = ellipses.chain([[0.0; 4]]).collect();
+        let tiles_at_once = self.tiles_at_once;
+        self.frame(photons, None, timing, |graph, buffer, photons| {
+            let landed = LandedPhotons {
+                photons,
+                ellipses: graph.upload("photons.ellipses", &ellipses, Dependence::LIGHTS),
+                counts: graph.upload("photons.counts", &counts, Dependence::LIGHTS),
+                stage: 0,
+                capacity: count + 1,
+            };
+            splat(graph, &SplatInputs { buffer, options: settings, length: 1.0, tiles_at_once }, &landed)
+        })
+    }
+
+    /// The same of any way to make the slot of photons, whose records are two texels each, and a third if they have `ellipses`; one more holds nothing.
+    pub(super) fn frame(
+        &mut self,
+        photons: &[Landed],
+        ellipses: Option<f64>,
+        timing: Timing,
+        draw: impl FnOnce(&mut Graph<'_>, &GBuffer, BufferRef<[u32; 4]>) -> ImageRef,
+    ) -> (Vec<DVec3>, Vec<PassTiming>) {
         let mut graph = Graph::new(&mut self.store);
         let geometry = Geometry::import(&mut graph, &self.data);
         let view = View { camera: self.camera, size: self.size, sky: [0.0; 3], emission: false };
@@ -66,40 +96,29 @@ impl<'s> Bench<'s> {
                 let [x, y, z] = (photon.position - self.data.origin).as_vec3().to_array().map(f32::to_bits);
                 let [red, green, blue] = photon.flux.map(f32::to_bits);
                 let normal = pack_direction(photon.normal.as_vec3());
-                [[x, y, z, normal], [red, green, blue, (photon.radius as f32).to_bits()]]
+                let ellipse = ellipses.map(|ratio| {
+                    let towards = photon.normal.any_orthonormal_vector().as_vec3();
+                    [pack_direction(towards), ((photon.radius * ratio) as f32).to_bits(), 0, 0]
+                });
+                let record = [[x, y, z, normal], [red, green, blue, (photon.radius as f32).to_bits()]];
+                record.into_iter().chain(ellipse)
             })
-            .chain([[0; 4]; 2])
+            .chain([[0; 4]; 3])
             .collect();
-        let count = photons.len() as u32;
-        let counts = [count.div_ceil(64), 1, 1, count, 6, count, 0, 0];
-        let (ratio, towards) = self.squeeze;
-        let ellipses = photons.iter().map(|photon| {
-            let direction = towards.reject_from(photon.normal).normalize_or_zero().as_vec3();
-            direction.extend((photon.radius * ratio) as f32).to_array()
-        });
-        let ellipses: Vec<[f32; 4]> = ellipses.chain([[0.0; 4]]).collect();
-        let landed = LandedPhotons {
-            photons: graph.upload("photons.landed", &words, Dependence::LIGHTS),
-            ellipses: graph.upload("photons.ellipses", &ellipses, Dependence::LIGHTS),
-            counts: graph.upload("photons.counts", &counts, Dependence::LIGHTS),
-            stage: 0,
-            capacity: count + 1,
-        };
-        let inputs = SplatInputs { buffer: &buffer, options: settings, length: 1.0, tiles_at_once: self.tiles_at_once };
-        let slot = splat(&mut graph, &inputs, &landed);
+        let records = graph.upload("photons.landed", &words, Dependence::LIGHTS);
+        let slot = draw(&mut graph, &buffer, records);
         let read = graph.read_back(slot);
         let mut executed = graph.run(timing).expect("a frame");
         let bytes = executed.take(read);
         let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
         let color = |[red, green, blue, _]: [f32; 4]| DVec3::new(red.into(), green.into(), blue.into()) * PI;
-        let colors = texels.into_iter().map(color).collect();
+        let colors: Vec<DVec3> = texels.into_iter().map(color).collect();
+        assert!(colors.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
         (colors, executed.passes)
     }
 
     pub(super) fn irradiance(&mut self, settings: &PhotonOptions, photons: &[Landed]) -> Vec<DVec3> {
-        let found = self.run(settings, photons, Timing::Frame).0;
-        assert!(found.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
-        found
+        self.run(settings, photons, Timing::Frame).0
     }
 
     /// Through a continuous place on the image, of length 1 along the camera's axis when perspective.
@@ -115,6 +134,20 @@ impl<'s> Bench<'s> {
     pub(super) fn on_floor(&self, x: f64, y: f64) -> DVec3 {
         let (start, ray) = self.ray(x, y);
         start - ray * (start.y / ray.y)
+    }
+
+    /// The pixel that a point falls on, seen in perspective.
+    pub(super) fn pixel_of(&self, point: DVec3) -> usize {
+        let axis = |axis: [f32; 3]| Vec3::from(axis).as_dvec3();
+        let (eye, forward) = (axis(self.camera.position_rs) + self.data.origin, axis(self.camera.forward));
+        let away = (point - eye) / (point - eye).dot(forward);
+        let place = |scaled: [f32; 3], side: u32| {
+            let across = axis(scaled);
+            let ndc = away.dot(across) / across.length_squared();
+            (0.5 * (ndc + 1.0) * f64::from(side)).floor() as usize
+        };
+        place(self.camera.down_scaled, self.size[1]) * self.size[0] as usize
+            + place(self.camera.right_scaled, self.size[0])
     }
 
     /// ΣE·A over the pixels, A the area of the plane y = 0 that each shows, W.

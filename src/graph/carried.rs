@@ -17,9 +17,19 @@ impl Graph<'_> {
 
     /// Whether memory holds the content `key` of a buffer.
     pub(crate) fn finds<T>(&self, buffer: BufferRef<T>, key: u64) -> bool {
+        self.held_key(buffer) == Some(key)
+    }
+
+    /// The key of what memory holds of a buffer from an earlier frame.
+    pub(crate) fn held_key<T>(&self, buffer: BufferRef<T>) -> Option<u64> {
         let resource = &self.resources[buffer.id];
-        let Body::Buffer { bytes } = resource.body else { return false };
-        self.store.fits(resource) && self.store.buffer_key(&resource.name, bytes) == Some(key)
+        let Body::Buffer { bytes } = resource.body else { return None };
+        self.store.buffer_key(&resource.name, bytes).filter(|_| self.store.fits(resource))
+    }
+
+    /// The key of what the passes that are declared so far leave in a buffer: it names all that this depends on.
+    pub(crate) fn key_of<T>(&self, buffer: BufferRef<T>) -> u64 {
+        self.resources[buffer.id].content[0].0
     }
 
     /// Lets passes start from the content `key` of a buffer, which memory holds ([`Graph::finds`]).

@@ -113,6 +113,6 @@ impl<'f, 's> FrameCx<'f, 's> {
 
     /// The views from the lights, and what their texels reflect, for a method that takes them.
     pub(crate) fn lights(&self) -> &'f LightViews {
-        self.frame.lights.as_ref().expect("made for every method that takes them, where something shines")
+        self.frame.light_views()
     }
 }

@@ -19,6 +19,7 @@ macro_rules! for_all_methods {
             }
             caustics {
                 photons => Photons(PhotonOptions),
+                points => Points(PointOptions),
             }
             specular {
                 radiance_maps => RadianceMaps(RadianceMapsOptions),

@@ -64,6 +64,7 @@ fn the_grids_that_are_checked_in_are_sound() {
         ("reich", 50),
         ("reich-pixels", 3),
         ("reich-maps", 61),
+        ("larsen", 44),
     ];
     for (name, count) in counts {
         let path = format!("sweeps/{name}.toml");

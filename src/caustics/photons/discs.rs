@@ -3,8 +3,8 @@
 
 use ash::vk;
 
-use super::records::{DRAW_WORD, STAGE_WORDS};
 use super::splat_tiles::{RECORDS, Splat, TileList};
+use crate::frame::photons::records::{DRAW_WORD, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::shaders::photon_splat::{Discs, DiscsPush};
 use crate::vulkan::RasterState;

@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
 use super::scene_lists::SceneLists;
+use crate::frame::photons::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::photon_lists::{

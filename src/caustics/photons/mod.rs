@@ -1,52 +1,43 @@
 //! `photons`: caustics by photons that leave the specular surfaces which lights see (Quyen 2014, section 3.3).
 //!
-//! The light views tell where light first meets a specular surface, and how much. Photons are drawn from there by flux, reflected or
-//! refracted, traced through the scene, and land on diffuse surfaces; at specular ones they go on, up to the number of bounces. All counts
-//! stay on the device.
+//! Where photons start and how they go on is the business of `frame/photons/`; here is what they are traced through, if it is lists of pixels, and how they become
+//! irradiance.
 
-mod bvh;
-mod choose;
 mod discs;
-mod emit;
 mod grid;
-mod land;
 mod layers;
 pub(crate) mod lines;
 mod list_views;
 pub(crate) mod lists;
 pub(crate) mod march;
 pub(crate) mod options;
-pub(crate) mod records;
 pub(crate) mod scene_lists;
 pub(crate) mod splat;
 mod splat_tiles;
 pub(crate) mod sums;
 mod tiles;
 mod upsample;
-mod views;
 
-use self::emit::Arrivals;
-use self::options::{PhotonGeometry, PhotonOptions, PhotonSplatting, PhotonTracing};
-use self::records::{LandedPhotons, PhotonRays};
+use self::options::{PhotonFootprint, PhotonGeometry, PhotonOptions, PhotonSplatting, PhotonTracing};
 use self::splat::{SplatInputs, splat};
 use crate::frame::inputs::FrameInputs;
+use crate::frame::photons::records::{ARRIVAL_BYTES, Arrivals, LARGEST_BUFFER, LandedPhotons, PhotonRays};
+use crate::frame::photons::turn::{Discs, Sending, Turn};
+use crate::frame::photons::ways::Ways;
+use crate::frame::photons::{bvh, choose, send, views};
+use crate::frame::scene_data::SceneData;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::slot::{CausticPaths, LightPaths, Slot};
 
-/// What every device lets a kernel see of one buffer, bytes.
-const LARGEST_BUFFER: u32 = 1 << 27;
-/// The largest record of a photon at a specular surface (glsl/photons/beam.glsl), and where it lands (glsl/photon_splat/disc.glsl).
-const ARRIVAL_BYTES: u32 = 80;
+/// Of a photon where it lands (glsl/photon_splat/disc.glsl).
 const DISC_BYTES: u32 = 48;
 
 /// Photons that are sent, of `options.max`.
 fn held(options: &PhotonOptions) -> u32 {
     options.max.min(LARGEST_BUFFER / ARRIVAL_BYTES).min(LARGEST_BUFFER / DISC_BYTES / options.bounces.max(1))
 }
-// The arithmetic of shares takes no more (glsl/photons/shares.glsl).
-const _: () = assert!(LARGEST_BUFFER / ARRIVAL_BYTES < 1 << 21);
 
 /// Photons from the specular surfaces that lights see, splatted.
 pub(crate) struct Photons;
@@ -66,7 +57,8 @@ impl Method for Photons {
     }
 
     fn shaders(options: &PhotonOptions, _: bool) -> Vec<&'static str> {
-        let choose = ["photons/pyramid", "photons/choose", "photons/mark", "photons/number", "photons/list"];
+        let choose =
+            ["photons/pyramid", "photons/choose", "photons/start", "photons/mark", "photons/number", "photons/list"];
         let mut shaders = [&choose[..], &["photons/specular*", "photons/emit", "photons/scatter"]].concat();
         if options.trace == PhotonTracing::Bvh {
             shaders.extend(["photons/trace", "photons/land_traced"]);
@@ -150,38 +142,51 @@ pub(crate) struct TracedPhotons {
 /// every bounce.
 pub(crate) fn trace_all(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> TracedPhotons {
     let FrameInputs { data, geometry, camera, set, .. } = *cx.frame;
-    let stages = options.bounces.max(1) as usize;
+    let sending = Sending {
+        piece: "caustics/photons",
+        turn: Turn::ALL,
+        stages: options.bounces.max(1) as usize,
+        discs: discs_of(options, data),
+    };
     let capacity = held(options).max(1);
-    let views = views::specular_views(cx);
-    let choice = choose::choose(cx.graph, set, &views, capacity, stages);
-    let landed = LandedPhotons::declare(cx.graph, choice.counts, stages, capacity * options.bounces.max(1));
-    let arrivals = Arrivals::declare(cx.graph, capacity);
+    let views = views::specular_views(cx.graph, cx.frame, sending.piece);
+    let choice = choose::choose(cx.graph, set, &sending, &views, capacity);
     let by_triangles = options.trace == PhotonTracing::Bvh;
     let lists = (!by_triangles)
         .then(|| lists::build(cx.graph, &scene_lists::ListInputs { data, geometry, camera: Some(camera), options }));
     let scene = cx.rays().filter(|_| by_triangles).map(|traced| (traced, traced.rays(cx.graph)));
     let through = scene.as_ref().map(|(traced, bindings)| (*traced, bindings));
-    emit::emit(cx, &views, &choice, arrivals);
-    let all_rays = PhotonRays::declare(cx.graph, 0, capacity);
-    let mut rays = all_rays;
-    for stage in 0..stages {
-        rays = PhotonRays { stage, ..all_rays };
-        emit::scatter(cx, options, &choice, arrivals, &rays);
-        match (through, lists) {
-            (Some((traced, bindings)), _) => bvh::trace(cx.graph, data, traced, bindings, &rays, choice.counts),
-            (None, Some(lists)) if options.trace == PhotonTracing::Lines => {
-                lines::trace(cx.graph, &lists, &rays, choice.counts);
-            }
-            (None, Some(lists)) => march::trace(cx.graph, &lists, &rays, choice.counts),
-            (None, None) => unreachable!("the hierarchy is there for a method that says it sends rays"),
+    let landed_capacity = capacity * options.bounces.max(1);
+    let ways = Ways {
+        views: &views,
+        choice: &choice,
+        arrivals: Arrivals::declare(cx.graph, capacity),
+        rays: PhotonRays::declare(cx.graph, 0, capacity),
+        landed: LandedPhotons::declare(cx.graph, choice.counts, sending.stages, landed_capacity),
+        scene: through,
+    };
+    send(cx.graph, cx.frame, &sending, &ways, |graph, rays| match (through, lists) {
+        (Some(scene), _) => bvh::trace(graph, data, &sending, scene, (rays, choice.counts)),
+        (None, Some(lists)) if options.trace == PhotonTracing::Lines => {
+            lines::trace(graph, &lists, rays, choice.counts);
         }
-        land::land(cx, options, through, &choice, &rays, (&landed, arrivals));
-    }
+        (None, Some(lists)) => march::trace(graph, &lists, rays, choice.counts),
+        (None, None) => unreachable!("the hierarchy is there for a method that says it sends rays"),
+    });
     TracedPhotons {
-        landed,
+        landed: ways.landed,
         choice: choice.choice,
         arrival_counts: choice.arrival_counts,
-        arrivals: arrivals.arrivals,
-        rays,
+        arrivals: ways.arrivals.arrivals,
+        rays: PhotonRays { stage: sending.stages - 1, ..ways.rays },
+    }
+}
+
+fn discs_of(options: &PhotonOptions, data: &SceneData) -> Discs {
+    match options.footprint {
+        PhotonFootprint::Way => {
+            Discs { scale: (options.radius * data.area.sqrt() / data.radius) as f32, by_beams: false }
+        }
+        PhotonFootprint::Beam => Discs { scale: options.radius as f32, by_beams: true },
     }
 }

@@ -20,11 +20,11 @@ use ash::vk;
 use super::discs::discs;
 use super::grid::Grid;
 use super::options::{PhotonFootprint, PhotonKernel, PhotonOptions, PhotonSplatting};
-use super::records::LandedPhotons;
 use super::splat_tiles::{PART_PHOTONS, STATE_WORDS, Splat};
 use super::tiles::tiles;
 use super::upsample::upsample;
 use crate::frame::gbuffer::GBuffer;
+use crate::frame::photons::records::LandedPhotons;
 use crate::graph::bindings::ImageRef;
 use crate::graph::{ClearColor, Graph};
 

@@ -3,8 +3,8 @@
 use ash::vk;
 
 use super::grid::Grid;
-use super::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
 use crate::frame::gbuffer::GBuffer;
+use crate::frame::photons::records::{COUNT_WORD, DISPATCH_WORD, LandedPhotons, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::shaders::groups;

@@ -3,8 +3,8 @@
 
 use ash::vk;
 
-use super::records::{DISPATCH_WORD, STAGE_WORDS};
 use super::splat_tiles::{PARTS_WORD, RECORDS, ROWS_WORD, Splat, TileList};
+use crate::frame::photons::records::{DISPATCH_WORD, STAGE_WORDS};
 use crate::graph::Graph;
 use crate::graph::bindings::ReadWriteBuffer;
 use crate::shaders::photon_splat::{Gather, GatherPush, Scan, ScanPush, Scatter, ScatterPush};

@@ -3,6 +3,7 @@
 use ash::vk;
 
 use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
+use super::turn::Sending;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
 use crate::graph::Graph;
@@ -19,10 +20,9 @@ pub(crate) fn shift(data: &SceneData, traced: &TracedScene) -> [f32; 3] {
 pub(crate) fn trace(
     graph: &mut Graph<'_>,
     data: &SceneData,
-    traced: &TracedScene,
-    scene: &SceneRays,
-    rays: &PhotonRays,
-    counts: BufferRef<u32>,
+    sending: &Sending,
+    (traced, scene): (&TracedScene, &SceneRays),
+    (rays, counts): (&PhotonRays, BufferRef<u32>),
 ) {
     let pass = Trace {
         scene_rays: scene.clone(),
@@ -31,6 +31,6 @@ pub(crate) fn trace(
         hits: rays.hits.start(),
         push: TracePush { shift: shift(data, traced), stage: rays.stage as u32 },
     };
-    let name = format!("caustics/photons/trace/bvh.{}", rays.stage);
+    let name = sending.pass(&format!("trace/bvh.{}", rays.stage));
     graph.pass(&name, pass).threads_indirect(counts, STAGE_WORDS * rays.stage + DISPATCH_WORD);
 }

@@ -3,12 +3,15 @@
 use ash::vk;
 
 use super::records::{COUNT_WORD, STAGE_WORDS};
+use super::turn::Sending;
 use super::views::SpecularViews;
 use crate::frame::light_set::LightSet;
 use crate::frame::view_layout::TILE;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph};
-use crate::shaders::photons::{Choose, ChoosePush, List, ListPush, Mark, MarkPush, Number, Pyramid, PyramidPush};
+use crate::shaders::photons::{
+    Choose, ChoosePush, List, ListPush, Mark, MarkPush, Number, Pyramid, PyramidPush, Start, StartPush,
+};
 use crate::shaders::types;
 
 /// Words of the pyramid before its sums (glsl/photons/pyramid.glsl).
@@ -24,15 +27,17 @@ const LEVELS_OF_PASS: usize = 2;
 /// Words of the choice (glsl/photons/choice.glsl).
 const CHOICE_LEVEL: usize = 3;
 pub(crate) const CHOICE_PHOTONS: usize = 5;
-pub(crate) const CHOICE_EMIT: usize = 6;
-const CHOICE_BLOCKS: usize = 9;
-const CHOICE_WORDS: usize = 10;
+const CHOICE_BLOCKS: usize = 6;
+const CHOICE_WORDS: usize = 7;
 
 const WORDS: vk::Format = vk::Format::R32_UINT;
 
 /// What was chosen.
 #[derive(Clone)]
 pub(crate) struct Choice {
+    /// The view of each square of 16x16 texels of the atlas, and how many squares a row has.
+    pub(super) tile_views: TexelBuffer,
+    pub(super) tiles_per_row: u32,
     pub(crate) levels: TexelBuffer,
     pub(crate) pyramid: BufferRef<u32>,
     pub(crate) choice: BufferRef<u32>,
@@ -75,21 +80,43 @@ fn tiles_of(set: &LightSet) -> Vec<u32> {
     places
 }
 
-/// Declares the passes; at most `most` photons in `stages` stages of rays.
-pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularViews, most: u32, stages: usize) -> Choice {
+/// The view of each square of 16x16 texels of the atlas; 0 where there is none, and no flux either.
+fn views_of_tiles(set: &LightSet) -> (Vec<u32>, u32) {
+    let [columns, rows] = set.atlas.size.map(|side| side.div_ceil(TILE).max(1));
+    let mut views = vec![0; (columns * rows) as usize];
+    for tile in &set.atlas.tiles {
+        let [column, row] = tile.origin.map(|at| at.cast_unsigned() / TILE);
+        views[(row * columns + column) as usize] = tile.view;
+    }
+    (views, columns)
+}
+
+/// Declares the passes; at most `most` photons of all turns.
+pub(crate) fn choose(
+    graph: &mut Graph<'_>,
+    set: &LightSet,
+    sending: &Sending,
+    views: &SpecularViews,
+    most: u32,
+) -> Choice {
     let size = set.atlas.size.map(|side| side.max(1));
     let (table, level_count, words) = level_table(size);
     let levels = graph.upload("photons.levels", &table, Dependence::LIGHTS).texels(vk::Format::R32G32B32A32_UINT);
+    let (tile_views, tiles_per_row) = views_of_tiles(set);
+    let tile_views = graph.upload("photons.tile_views", &tile_views, Dependence::LIGHTS).texels(WORDS);
     let made = Choice {
+        tile_views,
+        tiles_per_row,
         levels,
         pyramid: graph.buffer("photons.pyramid", words),
         choice: graph.buffer("photons.choice", CHOICE_WORDS),
         blocks: graph.buffer("photons.blocks", most as usize),
-        counts: graph.buffer("photons.counts", STAGE_WORDS * (stages + 1)),
-        arrival_counts: graph.buffer("photons.arrival_counts", STAGE_WORDS * (stages + 1)),
+        counts: graph.buffer("photons.counts", STAGE_WORDS * (sending.stages + 1)),
+        arrival_counts: graph.buffer("photons.arrival_counts", STAGE_WORDS * (sending.stages + 1)),
     };
 
-    graph.fill_buffer("caustics/photons/choose/mask-clear", made.pyramid, 0);
+    let piece = sending.piece;
+    graph.fill_buffer(&format!("{piece}/choose/mask-clear"), made.pyramid, 0);
     let tiles = tiles_of(set);
     let tile_list = graph.upload("photons.tiles", &tiles, Dependence::LIGHTS).texels(WORDS);
     for level in (0..level_count.saturating_sub(1).max(1)).step_by(LEVELS_OF_PASS) {
@@ -102,7 +129,7 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
             pyramid: made.pyramid.read_write(),
             push: PyramidPush { level: level as u32, columns, count },
         };
-        let name = format!("caustics/photons/choose/mask.{level}");
+        let name = format!("{piece}/choose/mask.{level}");
         let pass = graph.pass(&name, pass);
         let pass = if level == 0 { pass.count("dropped", made.pyramid, PYRAMID_DROPPED) } else { pass };
         pass.threads([count, 1, 1]);
@@ -112,23 +139,21 @@ pub(crate) fn choose(graph: &mut Graph<'_>, set: &LightSet, views: &SpecularView
         levels: made.levels.clone(),
         pyramid: made.pyramid.read(),
         choice: made.choice.write(),
-        counts: made.counts.write(),
-        arrival_counts: made.arrival_counts.write(),
-        push: ChoosePush { level_count: level_count as u32, most, stage_count: stages as u32 + 1 },
+        push: ChoosePush { level_count: level_count as u32, most },
     };
     graph
-        .pass("caustics/photons/choose/choose", pass)
+        .pass(&format!("{piece}/choose/choose"), pass)
         .count("specular texels", made.pyramid, 0)
         .count("level", made.choice, CHOICE_LEVEL)
         .count("photons", made.choice, CHOICE_PHOTONS)
         .groups([1, 1, 1]);
 
-    list(graph, views, &made, level_count as u32, most);
+    list(graph, piece, views, &made, (level_count as u32, most));
     made
 }
 
 /// Numbers the blocks of the chosen level that get photons, in the order of the atlas.
-fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count: u32, most: u32) {
+fn list(graph: &mut Graph<'_>, piece: &str, views: &SpecularViews, made: &Choice, (level_count, most): (u32, u32)) {
     let squares: usize = views.mask.info().extent[..2].iter().map(|side| side.div_ceil(SQUARE_SIDE) as usize).product();
     let marks = graph.buffer::<u32>("photons.marks", SQUARE_WORDS * squares);
     let square_counts = graph.buffer::<u32>("photons.square_counts", squares);
@@ -142,14 +167,14 @@ fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count
         square_counts: square_counts.start(),
         push: MarkPush { level_count },
     };
-    graph.pass("caustics/photons/choose/mark", pass).threads_indirect(made.choice, 0);
+    graph.pass(&format!("{piece}/choose/mark"), pass).threads_indirect(made.choice, 0);
 
     let pass = Number {
         choice: made.choice.texels(WORDS),
         square_counts: square_counts.read(),
         square_firsts: square_firsts.start(),
     };
-    graph.pass("caustics/photons/choose/number", pass).groups([1, 1, 1]);
+    graph.pass(&format!("{piece}/choose/number"), pass).groups([1, 1, 1]);
 
     let pass = List {
         marks: marks.read(),
@@ -158,9 +183,21 @@ fn list(graph: &mut Graph<'_>, views: &SpecularViews, made: &Choice, level_count
         push: ListPush { capacity: most },
     };
     graph
-        .pass("caustics/photons/choose/list", pass)
+        .pass(&format!("{piece}/choose/list"), pass)
         .count("blocks", made.choice, CHOICE_BLOCKS)
         .threads_indirect(made.choice, 0);
+}
+
+/// Empties the counts of all stages, and has the photons of the turn arrive at the first surfaces.
+pub(super) fn start(graph: &mut Graph<'_>, sending: &Sending, made: &Choice) {
+    let turn = sending.turn;
+    let pass = Start {
+        choice: made.choice.texels(WORDS),
+        counts: made.counts.write(),
+        arrival_counts: made.arrival_counts.write(),
+        push: StartPush { first: turn.first, stride: turn.stride, stage_count: sending.stages as u32 + 1 },
+    };
+    graph.pass(&sending.pass("trace/start"), pass).count("photons", made.arrival_counts, COUNT_WORD).groups([1, 1, 1]);
 }
 
 impl Choice {

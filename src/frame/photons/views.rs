@@ -6,11 +6,11 @@
 use ash::vk;
 
 use crate::frame::geometry::{Attributes, draw_list};
+use crate::frame::inputs::FrameInputs;
 use crate::frame::light_views::draw_views;
 use crate::frame::scene_data::{DrawnInstance, SceneData};
-use crate::graph::ClearColor;
 use crate::graph::bindings::ImageRef;
-use crate::method::FrameCx;
+use crate::graph::{ClearColor, Graph};
 use crate::shaders::photons::{Specular, SpecularTextured};
 use crate::shaders::types::DrawnLightView;
 use crate::vulkan::{DepthState, RasterState};
@@ -25,9 +25,9 @@ pub(crate) struct SpecularViews {
     pub(crate) layer: ImageRef,
 }
 
-pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
-    let (data, geometry, set, lights) = (cx.frame.data, cx.frame.geometry, cx.frame.set, cx.lights());
-    let graph = &mut *cx.graph;
+/// Declares the passes; `piece`: the method's.
+pub(crate) fn specular_views(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, piece: &str) -> SpecularViews {
+    let (data, geometry, set, lights) = (frame.data, frame.geometry, frame.set, frame.light_views());
     let size = set.atlas.size.map(|side| side.max(1));
     let made = SpecularViews {
         mask: graph.image("photons.mask", vk::Format::R32_SFLOAT, size),
@@ -44,16 +44,17 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     };
     let list = draw_list(data, Attributes::Plain, &views, plain);
     graph
-        .raster("caustics/photons/choose/views", pass, over_depth(Attributes::Plain, data))
+        .raster(&format!("{piece}/choose/views"), pass, over_depth(Attributes::Plain, data))
         .depth_test(lights.drawn_depth)
         .color_fresh(made.surface)
         .color_fresh(made.layer)
         .color(made.mask, Some(ClearColor::Float([0.0; 4])))
         .draw(list);
 
+    let textured_name = format!("{piece}/choose/views-textured");
     let textured = |drawn: &DrawnInstance| drawn.specular && drawn.textured;
     if !data.drawn.iter().any(textured) {
-        graph.skip("caustics/photons/choose/views-textured", "no textured specular surface");
+        graph.skip(&textured_name, "no textured specular surface");
         return made;
     }
     let pass = SpecularTextured {
@@ -64,7 +65,7 @@ pub(crate) fn specular_views(cx: &mut FrameCx<'_, '_>) -> SpecularViews {
     };
     let list = draw_list(data, Attributes::Textured, &views, textured);
     graph
-        .raster("caustics/photons/choose/views-textured", pass, over_depth(Attributes::Textured, data))
+        .raster(&textured_name, pass, over_depth(Attributes::Textured, data))
         .depth_test(lights.drawn_depth)
         .color(made.surface, None)
         .color(made.layer, None)

@@ -7,6 +7,13 @@
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 
+/// What every device lets a kernel see of one buffer, bytes.
+pub(crate) const LARGEST_BUFFER: u32 = 1 << 27;
+/// The largest record of a photon at a specular surface (glsl/photons/beam.glsl).
+pub(crate) const ARRIVAL_BYTES: u32 = 80;
+// The arithmetic of shares takes no more photons (glsl/photons/shares.glsl).
+const _: () = assert!(LARGEST_BUFFER / ARRIVAL_BYTES < 1 << 21);
+
 /// Words of a stage in `counts`.
 pub(crate) const STAGE_WORDS: usize = 8;
 /// Where a stage's arguments of an indirect dispatch, its count, and its arguments of an indirect draw are.
@@ -18,6 +25,25 @@ pub(crate) const DRAW_WORD: usize = 4;
 const RAY_TEXELS: usize = 3;
 const PHOTON_TEXELS: usize = 2;
 const RAY_BEAM_TEXELS: usize = 3;
+
+/// Photons that reached a specular surface (glsl/photons/arrivals.glsl).
+#[derive(Clone, Copy)]
+pub(crate) struct Arrivals {
+    pub(crate) arrivals: BufferRef<[u32; 4]>,
+    pub(crate) surfaces: BufferRef<[u32; 4]>,
+    /// How the photons beside each run (glsl/photons/beam.glsl).
+    pub(crate) beams: BufferRef<[f32; 4]>,
+}
+
+impl Arrivals {
+    pub(crate) fn declare(graph: &mut Graph<'_>, capacity: u32) -> Arrivals {
+        Arrivals {
+            arrivals: graph.buffer("photons.arrivals", 3 * capacity as usize),
+            surfaces: graph.buffer("photons.surfaces", 2 * capacity as usize),
+            beams: graph.buffer("photons.arrival_beams", 5 * capacity as usize),
+        }
+    }
+}
 
 /// Rays of one stage, and what they hit.
 #[derive(Clone, Copy)]

@@ -4,12 +4,12 @@ use ash::vk;
 
 use super::bvh::shift;
 use super::choose::Choice;
-use super::emit::Arrivals;
-use super::options::{PhotonFootprint, PhotonOptions};
-use super::records::{DISPATCH_WORD, LandedPhotons, PhotonRays, STAGE_WORDS};
-use crate::frame::rays::TracedScene;
-use crate::method::FrameCx;
-use crate::shaders::groups::{Landing, SceneRays};
+use super::records::{DISPATCH_WORD, PhotonRays, STAGE_WORDS};
+use super::turn::Sending;
+use super::ways::Ways;
+use crate::frame::inputs::FrameInputs;
+use crate::graph::Graph;
+use crate::shaders::groups::Landing;
 use crate::shaders::photons::{Land, LandTraced};
 use crate::shaders::types::LandingStage;
 
@@ -17,18 +17,16 @@ const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const WORDS: vk::Format = vk::Format::R32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Lands the photons of a stage. `scene`: what they were traced through, where that was triangles.
-pub(crate) fn land(
-    cx: &mut FrameCx<'_, '_>,
-    options: &PhotonOptions,
-    scene: Option<(&TracedScene, &SceneRays)>,
-    choice: &Choice,
-    rays: &PhotonRays,
-    lists: (&LandedPhotons, Arrivals),
+/// Lands the photons of a stage.
+pub(super) fn land(
+    graph: &mut Graph<'_>,
+    frame: &FrameInputs<'_>,
+    sending: &Sending,
+    (ways, rays): (&Ways<'_>, &PhotonRays),
 ) {
-    let (landed, next) = lists;
-    let (graph, data) = (&mut *cx.graph, cx.frame.data);
-    let name = format!("caustics/photons/trace/land.{}", rays.stage);
+    let Ways { choice, landed, arrivals: next, scene, .. } = ways;
+    let data = frame.data;
+    let name = sending.pass(&format!("trace/land.{}", rays.stage));
     // The first stage starts the list, the others add to it.
     let photons = if rays.stage == 0 { landed.photons.start() } else { landed.photons.modify() };
     let ellipses = if rays.stage == 0 { landed.ellipses.start() } else { landed.ellipses.modify() };
@@ -40,11 +38,8 @@ pub(crate) fn land(
         capacity: rays.capacity,
         landed_capacity: landed.capacity,
         radius: data.radius as f32,
-        disc_scale: match options.footprint {
-            PhotonFootprint::Way => (options.radius * data.area.sqrt() / data.radius) as f32,
-            PhotonFootprint::Beam => options.radius as f32,
-        },
-        beams_decide: u32::from(options.footprint == PhotonFootprint::Beam),
+        disc_scale: sending.discs.scale,
+        beams_decide: u32::from(sending.discs.by_beams),
     };
     let landing = Landing {
         rays: rays.rays.texels(RECORDS),
@@ -59,7 +54,7 @@ pub(crate) fn land(
         arrival_beams: next.beams.start(),
         ellipses,
     };
-    let geometry = cx.frame.geometry.clone();
+    let geometry = frame.geometry.clone();
     let pass = match scene.map(|(_, rays)| rays.clone()) {
         None => graph.pass(&name, Land { geometry, landing, push }),
         Some(scene_rays) => graph.pass(&name, LandTraced { geometry, landing, scene_rays, push }),

@@ -1,0 +1,65 @@
+#version 460
+#include "lib/prelude.glsl"
+#include "points/fixed_point.glsl"
+#include "points/landing_place.glsl"
+#include "points/tiles.glsl"
+#include "points/width.glsl"
+
+// Draws one photon as a point (Larsen & Christensen 2004, section 5): adds its flux Φ to the pixel that it falls on, and lists the tiles that the filter spreads it to.
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 0) uniform usamplerBuffer photons;
+layout(set = 0, binding = 1) uniform usamplerBuffer peak;
+layout(set = 0, binding = 2, r32ui) uniform uimage2D red;
+layout(set = 0, binding = 3, r32ui) uniform uimage2D green;
+layout(set = 0, binding = 4, r32ui) uniform uimage2D blue;
+layout(set = 0, binding = 5) buffer ReachBlock { uint tile_reaches[]; };
+layout(set = 0, binding = 6) writeonly buffer ListBlock { uint tile_list[]; };
+layout(set = 0, binding = 7) buffer HeadBlock { uint tile_head[]; };
+
+layout(push_constant, scalar) uniform Push {
+    ivec2 size;
+    uint count;
+    uint count_log2;
+    float radius;        // of all photons, m; 0: each has its own ellipse
+    float radius_scale;  // of its radii
+} push;
+
+void list_tiles(ivec2 pixel, int reach) {
+    ivec2 low = max(pixel - reach, ivec2(0)) / TILE_SIDE;
+    ivec2 high = min(pixel + reach, push.size - 1) / TILE_SIDE;
+    int columns = tiles_of(push.size).x;
+    for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+            int tile = y * columns + x;
+            if (atomicMax(tile_reaches[tile], uint(reach + 1)) == 0u) {
+                uint listed = atomicAdd(tile_head[3], 1u);
+                tile_list[listed] = uint(tile);
+                atomicMax(tile_head[0], min(listed + 1u, LISTED_A_ROW));
+                atomicMax(tile_head[1], listed / LISTED_A_ROW + 1u);
+                atomicMax(tile_head[2], 1u);
+            }
+        }
+    }
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= push.count || max3(flux_of_kept(photons, index)) <= 0.0) {
+        return;
+    }
+    KeptPhoton photon = load_kept(photons, index);
+    ivec2 pixel;
+    Place place;
+    if (!lands_in_view(photon, push.size, pixel, place)) {
+        return;
+    }
+    uvec3 terms = fixed_point(photon.flux, fixed_point_scale(texelFetch(peak, 0).x, push.count_log2), chance_of(photon.position_rs));
+    imageAtomicAdd(red, pixel, terms.x);
+    imageAtomicAdd(green, pixel, terms.y);
+    imageAtomicAdd(blue, pixel, terms.z);
+    float radius = bounded_radius(push.radius > 0.0 ? push.radius : push.radius_scale * photon.larger, place.extent);
+    // What rounding may add to the mean of several.
+    list_tiles(pixel, reach_of(1.01 * radius, place.extent));
+}

@@ -1,0 +1,438 @@
+//! The method `points`: flux through the filter, photons kept over frames, what it skips, and its error beside `photons`.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::invariance::{difference, transformed};
+use super::path_probe::{Ask, Tracer};
+use super::scenes::{builtin, floor, lambert, place, quad, request};
+use super::session::Session;
+use super::splat_bench::{Bench, Landed, from_above, largest, oblique, orthographic, random, white_floor};
+use crate::caustics::points::draw::draw;
+use crate::caustics::points::kept::KeptPhotons;
+use crate::renderer::options::PointOptions;
+use crate::renderer::{ColorImage, Frame, FrameRequest, Preset, Renderer, Settings, Slot, Technique, Timing};
+use crate::scene::{LightId, Scene};
+use crate::slot::{CausticPaths, PixelFilter};
+
+const SIZE: [u32; 2] = [120, 96];
+
+fn settings(changes: &[(&str, &str)]) -> Settings {
+    let mut settings = Settings::new(Technique::Direct, Preset::Default);
+    settings.methods.set(Slot::Caustics, "points").expect("a method");
+    for (key, value) in changes {
+        settings.set(key, value).expect("a setting and its value");
+    }
+    settings
+}
+
+fn options(changes: &[(&str, &str)]) -> PointOptions {
+    settings(changes).points
+}
+
+/// Irradiance by these photons on a white surface, and how many tiles were listed.
+fn filtered(bench: &mut Bench<'_>, options: &PointOptions, photons: &[Landed]) -> (Vec<DVec3>, u64) {
+    let count = photons.len() as u32 + 1;
+    let (light, passes) = bench.frame(photons, Some(0.4), Timing::Passes, |graph, buffer, photons| {
+        draw(graph, buffer, options, KeptPhotons { photons, count })
+    });
+    let drawn = passes.iter().find(|pass| pass.pass == "draw/points").expect("it is drawn");
+    (light, drawn.work["tiles"])
+}
+
+/// Both filters, and the radii of the one in the world.
+fn filters(pixel: f64) -> Vec<PointOptions> {
+    let world = |pixels: f64| options(&[("points.radius", &format!("{}", pixels * pixel))]);
+    vec![
+        options(&[("points.filter", "screen")]),
+        world(0.01),
+        world(1.2),
+        world(3.7),
+        world(11.0),
+        world(100.0),
+        options(&[]),
+    ]
+}
+
+/// Photons where pixels of the floor are seen, up to the screen's edges.
+fn scattered(bench: &Bench<'_>, count: usize) -> Vec<Landed> {
+    let mut seed = 5;
+    let mut photon = || {
+        let (x, y, position) = loop {
+            let [x, y] = SIZE.map(|side| f64::from(side) * random(&mut seed));
+            let (_, sight) = bench.ray(x, y);
+            let position = bench.on_floor(x, y);
+            // The floor ends at 4 m.
+            if sight.y < 0.0 && position.x.abs().max(position.z.abs()) < 3.5 {
+                break (x, y, position);
+            }
+        };
+        let pixel = (bench.on_floor(x + 0.5, y) - bench.on_floor(x - 0.5, y)).length();
+        let radius = pixel * 40_f64.powf(random(&mut seed) - 0.3);
+        let flux = [0, 1, 2].map(|_| random(&mut seed).powi(4) as f32);
+        Landed { position, normal: DVec3::Y, flux, radius }
+    };
+    (0..count).map(|_| photon()).collect()
+}
+
+fn total(photons: &[Landed]) -> DVec3 {
+    photons.iter().map(|photon| DVec3::from(photon.flux.map(f64::from))).sum()
+}
+
+#[test]
+fn filtered_flux_is_landed_flux_up_to_the_edges_of_the_screen() {
+    let session = Session::open();
+    let scene = white_floor();
+    for (what, camera) in [("above", from_above()), ("oblique", oblique()), ("orthographic", orthographic())] {
+        let mut bench = Bench::new(&session, &scene, &camera, SIZE);
+        let pixel = (bench.on_floor(61.0, 48.0) - bench.on_floor(60.0, 48.0)).length();
+        for count in [1, 7, 400] {
+            let photons = scattered(&bench, count);
+            for options in filters(pixel) {
+                let (light, _) = filtered(&mut bench, &options, &photons);
+                let error = (bench.flux_on_floor(&light) / total(&photons) - 1.0).abs().max_element();
+                println!(
+                    "{what}, {count} photons, {:?} of {}: flux off by {error:.2e}",
+                    options.filter, options.radius
+                );
+                assert!(error < 0.01, "{what}, {count} photons, {options:?}: {error}");
+            }
+        }
+    }
+}
+
+/// One photon in the middle of a pixel, seen from straight above in parallel: equation 4 over its sum, 156.76.
+#[test]
+fn one_photon_is_spread_as_equation_4_says() {
+    let session = Session::open();
+    let scene = white_floor();
+    let camera = crate::scene::CameraView::look_at(
+        DVec3::new(0.0, 2.0, 0.0),
+        DVec3::ZERO,
+        DVec3::Z,
+        crate::scene::Projection::Orthographic { half_width: 1.2, half_height: 0.96, near: 0.1, far: 10.0 },
+    );
+    let mut bench = Bench::new(&session, &scene, &camera, SIZE);
+    let photon = Landed { position: bench.on_floor(40.5, 30.5), normal: DVec3::Y, flux: [1.0, 2.0, 4.0], radius: 0.1 };
+    let (light, tiles) = filtered(&mut bench, &options(&[("points.filter", "screen")]), &[photon]);
+    let area = 0.02 * 0.02;
+    for (index, found) in (0_i32..).zip(&light) {
+        let (i, j) = (index % 120 - 40, index / 120 - 30);
+        let weight = if i.abs() <= 3 && j.abs() <= 3 { f64::from(19 - i * i - j * j).sqrt() } else { 0.0 };
+        let expected = DVec3::new(1.0, 2.0, 4.0) * weight / (156.76 * area);
+        assert!(
+            (*found - expected).abs().max_element() < 1e-3 * 4.0 / area,
+            "{i}, {j}: {found} in place of {expected}"
+        );
+    }
+    // Pixels 37 to 43 and 27 to 33, of tiles of eight.
+    assert_eq!(tiles, 4);
+}
+
+/// A floor that ends in sight, and one half a metre below it: nothing of what lands on the one is lost or comes to the other.
+#[test]
+fn light_stays_on_its_surface() {
+    let session = Session::open();
+    let mut scene = floor(0.3, lambert([1.0; 3]));
+    let white = scene.add_material(lambert([1.0; 3])).expect("a sound material");
+    let corners = [[-4.0, -0.5, -4.0], [-4.0, -0.5, 4.0], [4.0, -0.5, 4.0], [4.0, -0.5, -4.0]];
+    place(&mut scene, vec![quad(corners, white)], DAffine3::IDENTITY);
+    for (what, camera) in [("above", from_above()), ("oblique", oblique())] {
+        let mut bench = Bench::new(&session, &scene, &camera, SIZE);
+        let mut seed = 3;
+        let mut photon = || {
+            let [x, z] = [0, 1].map(|_| 0.6 * random(&mut seed) - 0.3);
+            Landed { position: DVec3::new(x, 0.0, z), normal: DVec3::Y, flux: [1.0; 3], radius: 0.05 }
+        };
+        let photons: Vec<Landed> = (0..2000).map(|_| photon()).collect();
+        for options in [options(&[("points.filter", "screen")]), options(&[("points.radius", "0.08")]), options(&[])] {
+            let (light, _) = filtered(&mut bench, &options, &photons);
+            let upper = |index: usize| {
+                let (x, y) = (f64::from(index as u32 % SIZE[0]) + 0.5, f64::from(index as u32 / SIZE[0]) + 0.5);
+                let point = bench.on_floor(x, y);
+                point.x.abs() < 0.3 && point.z.abs() < 0.3
+            };
+            let of = |wanted: bool| -> Vec<DVec3> {
+                let pick = |(index, light): (usize, &DVec3)| if upper(index) == wanted { *light } else { DVec3::ZERO };
+                light.iter().enumerate().map(pick).collect()
+            };
+            // On the floor below a pixel shows other places, and more of them.
+            assert!(largest(&of(false)) == 0.0, "{what}, {options:?}: light on the floor below");
+            // Photons in pixels whose middle shows the floor below are not seen.
+            let seen: Vec<Landed> =
+                photons.iter().copied().filter(|photon| upper(bench.pixel_of(photon.position))).collect();
+            assert!(seen.len() > photons.len() * 9 / 10);
+            let error = bench.flux_on_floor(&of(true)).x / total(&seen).x - 1.0;
+            println!("{what}, {:?} of {}: flux off by {error:.2e}", options.filter, options.radius);
+            assert!(error.abs() < 0.01, "{what}, {options:?}: {error}");
+        }
+    }
+}
+
+#[test]
+fn neither_the_order_of_photons_nor_the_list_of_tiles_shows() {
+    let session = Session::open();
+    let scene = white_floor();
+    let mut bench = Bench::new(&session, &scene, &oblique(), SIZE);
+    let photons = scattered(&bench, 900);
+    let mut shuffled = photons.clone();
+    let mut seed = 9;
+    for index in (1..shuffled.len()).rev() {
+        shuffled.swap(index, (random(&mut seed) * (index + 1) as f64) as usize);
+    }
+    for options in filters(0.02) {
+        let all = options.clone().with(|options| options.tiles = crate::renderer::options::PointTiles::All);
+        let (first, _) = filtered(&mut bench, &options, &photons);
+        assert!(first == filtered(&mut bench, &options, &shuffled).0, "{options:?}: the order shows");
+        assert!(first == filtered(&mut bench, &all, &photons).0, "{options:?}: the list of tiles shows");
+    }
+}
+
+fn everything(scene: &Scene, size: [u32; 2]) -> FrameRequest {
+    let camera = scene.camera_view(None).expect("a view");
+    FrameRequest { image: false, timing: Timing::Passes, ..request(size, camera, &[Slot::Caustics]) }
+}
+
+fn caustics(frame: &Frame) -> &ColorImage {
+    &frame.slots[&Slot::Caustics]
+}
+
+fn bits(image: &ColorImage) -> Vec<u32> {
+    image.pixels.as_flattened().iter().map(|channel| channel.to_bits()).collect()
+}
+
+/// Photons that a frame sent.
+fn sent(frame: &Frame) -> u64 {
+    let starts =
+        frame.timings.passes.iter().filter(|pass| pass.pass.starts_with("trace/start") && pass.skipped.is_none());
+    starts.map(|pass| pass.work["photons"]).sum()
+}
+
+fn ran(frame: &Frame, level: &str) -> bool {
+    let of = |pass: &&crate::renderer::PassTiming| pass.piece == "caustics/points" && pass.pass.starts_with(level);
+    frame.timings.passes.iter().filter(of).any(|pass| pass.skipped.is_none())
+}
+
+fn move_light(scene: &mut Scene, by: f64) {
+    let node = scene.placed_lights()[0].node;
+    let local = DAffine3::from_translation(DVec3::new(by, 0.0, 0.3 * by)) * scene.nodes()[node.0].local;
+    scene.set_local_transform(node, local).expect("finite");
+}
+
+/// How far a picture has come from the one before to the one after.
+fn arrived(before: &ColorImage, now: &ColorImage, after: &ColorImage) -> f64 {
+    let way = |from: &ColorImage, to: &ColorImage| -> Vec<f64> {
+        let pairs = from.pixels.as_flattened().iter().zip(to.pixels.as_flattened());
+        pairs.map(|(&from, &to)| f64::from(to) - f64::from(from)).collect()
+    };
+    let (whole, part) = (way(before, after), way(before, now));
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    product(&part, &whole) / product(&whole, &whole)
+}
+
+/// Where the light moves each frame sends its share of the photons; when all have been sent again the picture is that of a fresh start, and nothing runs any more.
+#[test]
+fn photons_are_sent_again_in_turns() {
+    let session = Session::open();
+    let mut scene = builtin("ring");
+    let settings = settings(&[("points.photons", "4001"), ("points.frames", "4")]);
+    let mut renderer = session.renderer(&settings);
+    let whole = everything(&scene, [64, 48]);
+    let render = |renderer: &mut Renderer, scene: &Scene, index: u32| {
+        renderer.render(scene, &FrameRequest { index, ..whole.clone() }).expect("a frame")
+    };
+    assert_eq!(sent(&render(&mut renderer, &scene, 0)), 4001);
+    let still = render(&mut renderer, &scene, 1);
+    assert!(!ran(&still, ""), "nothing changed");
+    move_light(&mut scene, 0.05);
+    let fresh = session.render(&scene, &settings, &whole);
+    let mut shares = Vec::new();
+    let mut last = still;
+    let before = caustics(&last).clone();
+    for index in 2..6 {
+        let frame = render(&mut renderer, &scene, index);
+        shares.push(sent(&frame));
+        println!("{index}: {:.2} of the change", arrived(&before, caustics(&frame), caustics(&fresh)));
+        assert!(bits(caustics(&frame)) != bits(caustics(&last)), "frame {index} shows what it sent");
+        last = frame;
+    }
+    shares.sort_unstable();
+    assert_eq!(shares, [1000, 1000, 1000, 1001]);
+    assert!(bits(caustics(&last)) == bits(caustics(&fresh)), "all were sent again");
+    assert!(!ran(&render(&mut renderer, &scene, 6), ""), "nothing changed");
+    // It goes on moving: every photon is four frames old at most.
+    for index in 7..13 {
+        move_light(&mut scene, 0.01);
+        let share = sent(&render(&mut renderer, &scene, index));
+        assert!((1000..=1001).contains(&share), "{share}");
+    }
+    let camera_moved = FrameRequest { size: [60, 40], ..whole.clone() };
+    for index in 13..17 {
+        render(&mut renderer, &scene, index);
+    }
+    let moved = renderer.render(&scene, &camera_moved).expect("a frame");
+    assert!(ran(&moved, "draw") && !ran(&moved, "trace") && !ran(&moved, "choose"), "a moved camera sends no photon");
+}
+
+#[test]
+fn the_same_frames_give_the_same_bits() {
+    let run = || {
+        let session = Session::open();
+        let mut scene = builtin("ring");
+        let mut renderer = session.renderer(&settings(&[("points.photons", "3000"), ("points.frames", "3")]));
+        let whole = everything(&scene, [64, 48]);
+        let mut pictures = Vec::new();
+        for index in 0..4 {
+            let frame = renderer.render(&scene, &FrameRequest { index, ..whole.clone() }).expect("a frame");
+            pictures.push(bits(caustics(&frame)));
+            move_light(&mut scene, 0.02);
+        }
+        renderer.invalidate();
+        let frame = renderer.render(&scene, &whole).expect("a frame");
+        pictures.push(bits(caustics(&frame)));
+        (pictures, bits(caustics(&session.render(&scene, renderer.settings(), &whole))))
+    };
+    let (first, fresh) = run();
+    assert!(first == run().0);
+    assert!(first.last() == Some(&fresh), "what was forgotten is made anew");
+}
+
+#[test]
+fn where_nothing_is_specular_or_lit_nothing_runs() {
+    let session = Session::open();
+    let reason = |scene: &Scene, changes: &[(&str, &str)]| {
+        let frame = session.render(scene, &settings(changes), &everything(scene, [32, 24]));
+        assert!(!ran(&frame, ""));
+        assert!(caustics(&frame).pixels.iter().all(|pixel| *pixel == [0.0; 3]));
+        let named = frame.timings.passes.iter().find(|pass| pass.full_name() == "caustics/points");
+        named.and_then(|pass| pass.skipped.clone()).expect("a reason")
+    };
+    assert_eq!(reason(&builtin("cornell-point"), &[]), "no specular or transmissive surface");
+    let mut ring = builtin("ring");
+    assert_eq!(reason(&ring, &[("points.photons", "0")]), "no photons asked for");
+    assert_eq!(reason(&ring, &[("points.bounces", "0")]), "no photons asked for");
+    for index in 0..ring.lights().len() {
+        let dark = crate::scene::Light { intensity: [0.0; 3], ..ring.lights()[index].clone() };
+        ring.set_light(LightId(index), dark).expect("sound");
+    }
+    assert_eq!(reason(&ring, &[]), "no light");
+}
+
+/// Where there are no photons nothing is filtered.
+#[test]
+fn tiles_without_photons_are_skipped() {
+    let session = Session::open();
+    let scene = white_floor();
+    let mut bench = Bench::new(&session, &scene, &from_above(), SIZE);
+    let none = filtered(&mut bench, &options(&[]), &[]);
+    assert!(none.1 == 0 && largest(&none.0) == 0.0);
+    let photon = Landed { position: bench.on_floor(12.0, 12.0), normal: DVec3::Y, flux: [1.0; 3], radius: 1e-3 };
+    assert_eq!(filtered(&mut bench, &options(&[]), &[photon]).1, 1, "the middle of a tile");
+}
+
+/// More photons than pixels, fewer than turns, pictures of a pixel, scenes of all kinds: no pixel is anything but a number.
+#[test]
+fn any_budget_size_and_scene_will_do() {
+    let session = Session::open();
+    let sound = |scene: &Scene, changes: &[(&str, &str)], size: [u32; 2]| {
+        let frame = session.render(scene, &settings(changes), &everything(scene, size));
+        let pixels = caustics(&frame).pixels.as_flattened();
+        assert!(pixels.iter().all(|channel| channel.is_finite() && *channel >= 0.0), "{changes:?}, {size:?}");
+        pixels.iter().copied().fold(0.0, f32::max)
+    };
+    let ring = builtin("ring");
+    for filter in ["screen", "world"] {
+        let few = ["1", "5", "300000"].map(|count| [("points.filter", filter), ("points.photons", count)]);
+        for changes in few {
+            assert!(sound(&ring, &changes, [40, 32]) > 0.0 || changes[1].1 != "300000");
+        }
+        for size in [[1, 1], [17, 5], [3, 33]] {
+            sound(&ring, &[("points.filter", filter), ("points.frames", "64")], size);
+        }
+        for name in ["water", "lights", "textured", "ring-occluded"] {
+            let small = [("points.filter", filter), ("points.bounces", "6"), ("lights.resolution", "128")];
+            sound(&builtin(name), &small, [60, 45]);
+        }
+    }
+}
+
+fn rrmse(found: &[DVec3], truth: &[DVec3]) -> f64 {
+    let squares: f64 = found.iter().zip(truth).map(|(found, truth)| (*found - *truth).length_squared()).sum();
+    let mean: f64 = truth.iter().map(|truth| truth.element_sum()).sum::<f64>() / (3 * truth.len()) as f64;
+    (squares / (3 * truth.len()) as f64).sqrt() / mean
+}
+
+/// Means of blocks of 8×8 pixels of a square image.
+fn blocks(pixels: &[DVec3], side: usize) -> Vec<DVec3> {
+    let count = side / 8;
+    let block = |index: usize| {
+        let (x, y) = (index % count * 8, index / count * 8);
+        let rows = (y..y + 8).flat_map(|row| &pixels[row * side + x..row * side + x + 8]);
+        rows.sum::<DVec3>() / 64.0
+    };
+    (0..count * count).map(block).collect()
+}
+
+/// Energy against L S⁺ D E, and the error beside that of `photons` at as many photons: less of blocks, and about as much of pixels, half of which lies in a few at the
+/// cusp that are brighter than what a pixel's photons are spread to.
+#[test]
+fn caustics_of_the_ring_are_right() {
+    let session = Session::open();
+    let mut tracer = Tracer::new(&session);
+    let scene = builtin("ring");
+    let whole = everything(&scene, [256, 256]);
+    let ask = Ask {
+        bounces: Some(2),
+        caustics: CausticPaths::Specular,
+        filter: PixelFilter::Center,
+        ..Ask::new(whole.size, 48, whole.camera.clone())
+    };
+    let truth = tracer.trace(&scene, &ask).slot(Slot::Caustics);
+    let sum = |pixels: &[DVec3]| pixels.iter().map(|pixel| pixel.element_sum()).sum::<f64>();
+    let pixels = |settings: &Settings| -> Vec<DVec3> {
+        let frame = session.render(&scene, settings, &whole);
+        caustics(&frame).pixels.iter().map(|pixel| DVec3::from(pixel.map(f64::from))).collect()
+    };
+    let mut other = settings(&[("photons.max", "10000")]);
+    other.methods.set(Slot::Caustics, "photons").expect("a method");
+    let errors = |found: &[DVec3]| [rrmse(found, &truth), rrmse(&blocks(found, 256), &blocks(&truth, 256))];
+    let beside = errors(&pixels(&other));
+    println!("photons: rrmse of pixels and blocks {beside:.4?}, energy {:.4}", sum(&pixels(&other)) / sum(&truth));
+    let mut found_errors = Vec::new();
+    for changes in [&[][..], &[("points.filter", "screen")]] {
+        let found = pixels(&settings(changes));
+        let (energy, error) = (sum(&found) / sum(&truth), errors(&found));
+        println!("{changes:?}: rrmse of pixels and blocks {error:.4?}, energy {energy:.4}");
+        assert!((energy - 1.0).abs() < 0.03, "{changes:?}: {energy}");
+        found_errors.push(error);
+    }
+    let [world, screen] = [found_errors[0], found_errors[1]];
+    assert!(world[0] < 1.1 * beside[0] && world[1] < beside[1], "{world:?} beside {beside:?}");
+    assert!(world[0] < screen[0] && world[1] < screen[1], "the filter in the world is the default");
+}
+
+/// The unit of length, place and turn do not matter.
+#[test]
+fn a_scene_that_is_moved_as_a_whole_has_the_same_caustics() {
+    let session = Session::open();
+    let scene = builtin("ring");
+    let image = |scene: &Scene, radius: f64| {
+        let settings = settings(&[("points.photons", "4000"), ("points.radius", &radius.to_string())]);
+        caustics(&session.render(scene, &settings, &everything(scene, [96, 72]))).clone()
+    };
+    let radius = 0.05;
+    for (what, scale, place_at) in
+        [("small", 1e-3, DVec3::ZERO), ("large", 1e3, DVec3::ZERO), ("far", 1.0, DVec3::splat(6e4))]
+    {
+        let transform = DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: place_at };
+        let copy = transformed(&scene, transform, scale);
+        for wanted in [0.0, radius] {
+            let found = difference(&image(&scene, wanted), &image(&copy, wanted * scale));
+            println!("{what}, radius {wanted}: rmse {:.2e}, at most {:.2e}", found.rmse, found.most);
+            assert!(found.rmse < 5e-3, "{what}: {:.2e}", found.rmse);
+        }
+    }
+    let turned = transformed(&scene, DAffine3::from_quat(DQuat::from_rotation_y(0.7)), 1.0);
+    let found = difference(&image(&scene, 0.0), &image(&turned, 0.0));
+    println!("turned: rmse {:.2e}", found.rmse);
+    assert!(found.rmse < 0.02);
+}
