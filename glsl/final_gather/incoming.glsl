@@ -3,7 +3,7 @@
 #define FINAL_GATHER_INCOMING
 
 #include "groups/photon_map.glsl"
-#include "lib/hit_material.glsl"
+#include "lib/hit_albedo.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
 #include "final_gather/records.glsl"
@@ -69,18 +69,7 @@ vec3 radiance_along(vec3 origin, vec3 direction) {
         return vec3(0.0);
     }
     Triangle triangle = load_triangle(triangles, hit.triangle);
-    Material material = load_material(materials, triangle.material);
-    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
-    MaterialPoint point = material_factors(material, VERTEX_COLORS != 0u ? interpolated(corner_colors, triangle, weights) : vec4(1.0));
-    Material matter = material;
-    matter.flags &= ~(MATERIAL_NORMAL_TEXTURE | MATERIAL_EMISSIVE_TEXTURE);
-    if ((matter.flags & TEXTURES & MATERIAL_ALL_TEXTURES) != 0u) {
-        vec3 no_normal;
-        vec4 sets = interpolated(corner_texcoords, triangle, weights);
-        apply_textures(point, no_normal, matter, triangle.material, sets, Footprint(vec4(0.0), vec4(0.0)));
-    }
-    Lobes lobes = lobes_of_material(material, point);
-    vec3 albedo = clamp(indirect_diffuse_albedo(lobes.diffuse_albedo, lobes.f0, lobes.f90), 0.0, 1.0);
+    vec3 albedo = albedo_of_hit(triangle, hit);
     if (max3(albedo) <= 0.0) {
         return vec3(0.0);
     }

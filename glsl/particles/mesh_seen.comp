@@ -19,8 +19,6 @@ layout(push_constant, scalar) uniform Push { vec3 shift; } push;
 
 #include "particles/mesh_seen.glsl"
 
-const float DEPTH_SHARE = 1e-4;
-
 void main() {
     ivec2 pixel = pixel_of_invocation();
     ivec2 size = imageSize(spots);
@@ -34,7 +32,6 @@ void main() {
         vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         if (max3(indirect_diffuse_albedo(point)) > 0.0) {
-            // An orthographic camera has no distance; the image's width takes its place, unless depths round by more.
             float distance = camera.depth_range > 0.0 ? max(2.0 * length(camera.right_scaled), DEPTH_SHARE * camera.depth_range)
                                                       : distance(camera.position_rs, position_rs);
             spot = seen_subtriangle(

@@ -12,6 +12,7 @@ macro_rules! for_all_methods {
             diffuse {
                 ambient => Ambient(AmbientOptions),
                 final_gather => FinalGather(FinalGatherOptions),
+                lightmaps => Lightmaps(LightmapsOptions),
                 particles => Particles(ParticlesOptions),
                 rsm => Rsm(RsmOptions),
                 volumes => Volumes(VolumesOptions),

@@ -5,6 +5,7 @@ mod backs;
 mod emissive_cells;
 mod emitters;
 mod hierarchy;
+mod lightmap;
 mod looks;
 mod motion;
 mod sobol;
@@ -18,6 +19,7 @@ mod traced_scene;
 mod triangles;
 mod uploaded;
 
+pub(crate) use self::lightmap::{Lightmap, Texels};
 pub(crate) use self::motion::Motion;
 pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;

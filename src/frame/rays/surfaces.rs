@@ -1,12 +1,13 @@
 //! The surfaces as rays meet them: all instances flattened to triangles in render space, their corners' attributes, and the hierarchy of their boxes. It stands
 //! while geometry and materials do, whatever shines on it.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::DVec3;
 
 use super::backs::backs;
 use super::hierarchy::hierarchy;
+use super::lightmap::{Lightmap, Taking, Texels};
 use super::looks::Looks;
 use super::motion::{Motion, Part, motion, parts};
 use super::tessellation::Tessellation;
@@ -51,6 +52,8 @@ pub(crate) struct Surfaces {
     areas: Vec<f32>,
     /// The last one that was asked for, with its spacing.
     tessellation: Mutex<Option<(f64, Arc<Tessellation>)>>,
+    /// Likewise, with how finely it is cut.
+    lightmap: Mutex<Option<(Texels, Arc<Lightmap>)>>,
     pub(super) own_areas: Uploaded,
     pub(super) nodes: Uploaded,
     pub(super) leaves: Uploaded,
@@ -91,6 +94,7 @@ impl Surfaces {
         let motion = before.and_then(|before| before.motion_to(&parts, &triangles, &areas, [origin, middle_rs]));
         // What is kept of particles while things move goes by their numbers, and these by the sides that have some.
         let backs = before.filter(|_| motion.is_some()).map(|before| before.backs.clone());
+        let lightmap = before.filter(|_| motion.is_some()).and_then(|before| held(&before.lightmap).clone());
         let Corners { colors, texcoords, tangents } = &corners;
         Ok(Surfaces {
             key,
@@ -110,6 +114,7 @@ impl Surfaces {
             one_sided: scene.materials().iter().map(|material| !material.double_sided).collect(),
             backs: backs.unwrap_or_default(),
             tessellation: Mutex::new(None),
+            lightmap: Mutex::new(lightmap),
             own_areas: Uploaded::new(device, "traced.areas", &areas, FLOAT, key)?,
             areas,
             nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
@@ -143,12 +148,26 @@ impl Surfaces {
 
     /// Points closer to each other than `spacing` metres; `sides`: of each material, those that take diffuse light. The last one stands.
     pub(super) fn tessellation(&self, spacing: f64, sides: &[u32]) -> Arc<Tessellation> {
-        let mut held = self.tessellation.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = held(&self.tessellation);
         match &*held {
             Some((known, tessellation)) if *known == spacing => tessellation.clone(),
             _ => {
                 let made = Arc::new(Tessellation::new(&self.triangles, &self.areas, sides, spacing));
                 *held = Some((spacing, made.clone()));
+                made
+            }
+        }
+    }
+
+    /// Light maps, cut so finely; `sides` as above. The last ones stand, also while things move.
+    pub(super) fn lightmap(&self, texels: Texels, sides: &[u32]) -> Arc<Lightmap> {
+        let mut held = held(&self.lightmap);
+        match &*held {
+            Some((known, lightmap)) if *known == texels => lightmap.clone(),
+            _ => {
+                let taking = Taking { sides, backs: self.backs(), areas: &self.areas };
+                let made = Arc::new(Lightmap::new(&self.triangles, &self.parts, &taking, texels));
+                *held = Some((texels, made.clone()));
                 made
             }
         }
@@ -165,6 +184,10 @@ impl Surfaces {
         let all = [&self.own_areas, &self.nodes, &self.leaves, &self.colors, &self.texcoords, &self.tangents];
         all.iter().map(|list| list.bytes()).sum()
     }
+}
+
+fn held<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The size that all but a sixteenth of the triangles have, metres.

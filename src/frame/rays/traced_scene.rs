@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::emitters::{EmitterTable, emitter_table};
+use super::lightmap::{Lightmap, Texels};
 use super::looks::Looks;
 use super::surfaces::{Surfaces, surfaces_key};
 use super::targets::{Reach, TargetShares, targets};
@@ -206,6 +207,11 @@ impl TracedScene {
     /// Points of all diffuse surface, closer to each other than `spacing` metres.
     pub(crate) fn tessellation(&self, spacing: f64) -> Arc<Tessellation> {
         self.surfaces.tessellation(spacing, &self.looks.diffuse_sides)
+    }
+
+    /// Light maps of all diffuse surfaces, cut so finely.
+    pub(crate) fn lightmap(&self, texels: Texels) -> Arc<Lightmap> {
+        self.surfaces.lightmap(texels, &self.looks.diffuse_sides)
     }
 
     /// The area of all sides with a diffuse lobe, m².

@@ -1,0 +1,112 @@
+//! The approximated illumination map: what texels receive of the lights, and along links of each other.
+
+use super::formats::{FLOATS4, WORDS2};
+use super::options::LightmapsOptions;
+use super::texels::LightTexels;
+use crate::frame::rays::TracedScene;
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::lightmaps::{Bounce, BouncePush, Direct, DirectPush};
+
+/// Bounces at most.
+const MOST_BOUNCES: u32 = 64;
+
+/// What the AIM is made of.
+pub(super) struct Approximated {
+    /// Of the lights alone, W/m².
+    pub(super) direct: BufferRef<[f32; 4]>,
+    /// Bounces along links.
+    pub(super) bounces: u32,
+}
+
+/// Flux that the bounces leave, at most. What is left makes no texel renew itself when the bounces go on later (glsl/lightmaps/rank.comp).
+const LEFT: f64 = 0.002;
+
+/// Bounces after which so little is left, if surfaces reflect `albedo` of what they receive.
+fn bounces_for(albedo: f64) -> u32 {
+    ((LEFT.ln() / albedo.clamp(1e-3, 0.99).ln()).ceil() as u32).clamp(1, MOST_BOUNCES)
+}
+
+impl Approximated {
+    /// Declares the pass that finds what comes of the lights.
+    pub(super) fn declare(
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        texels: &LightTexels,
+        options: &LightmapsOptions,
+    ) -> Approximated {
+        let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count());
+        let emissive = scene.emissive_count > 0;
+        let sky = scene.sky.iter().any(|&channel| channel > 0.0);
+        let sample_count = if emissive { options.samples } else { 0 };
+        let direction_count = if emissive || sky { options.samples } else { 0 };
+        let pass = Direct {
+            scene_rays: texels.rays.clone(),
+            scene_lights: scene.lights(graph),
+            lightmap: texels.group.clone(),
+            arrivals: texels.arrivals.texels(FLOATS4),
+            direct: direct.write(),
+            push: DirectPush {
+                texel_count: texels.map.count,
+                light_count: scene.punctual_count,
+                emitter_count: scene.emissive_count,
+                sample_count,
+                direction_count,
+                density_scale: scene.emissive_density_scale,
+                sky: scene.sky,
+            },
+        };
+        let rays = u64::from(scene.punctual_count + sample_count + direction_count) * texels.map.used.len() as u64;
+        graph.pass("diffuse/lightmaps/aim/direct", pass).note("rays", rays).threads(texels.threads());
+        let bounces =
+            options.bounces.map_or_else(|| bounces_for(scene.greatest_albedo()), |bounces| bounces.max(1) - 1);
+        Approximated { direct, bounces }
+    }
+
+    /// After all bounces, from nothing.
+    pub(super) fn settled(&self, graph: &mut Graph<'_>, texels: &LightTexels) -> BufferRef<[f32; 4]> {
+        self.bounced(graph, texels, self.direct, self.bounces, None)
+    }
+
+    /// After more bounces of what was there `before`; the last of them may write into a buffer that is there.
+    pub(super) fn bounced(
+        &self,
+        graph: &mut Graph<'_>,
+        texels: &LightTexels,
+        before: BufferRef<[f32; 4]>,
+        bounces: u32,
+        last: Option<BufferRef<[f32; 4]>>,
+    ) -> BufferRef<[f32; 4]> {
+        let mut light = before;
+        for number in 0..bounces {
+            let after = match last.filter(|_| number + 1 == bounces) {
+                Some(last) => last,
+                None => graph.buffer::<[f32; 4]>(&format!("lightmaps.bounced.{number}"), texels.count()),
+            };
+            let pass = Bounce {
+                direct: self.direct.texels(FLOATS4),
+                links: texels.links.texels(WORDS2),
+                before: light.texels(FLOATS4),
+                after: after.write(),
+                push: BouncePush { texel_count: texels.map.count, link_count: texels.link_count },
+            };
+            graph.pass(&format!("diffuse/lightmaps/aim/bounce.{number}"), pass).threads(texels.threads());
+            light = after;
+        }
+        light
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounces_leave_little() {
+        for albedo in [0.2, 0.5, 0.73, 0.9] {
+            let bounces = bounces_for(albedo);
+            assert!(albedo.powi(bounces as i32) <= LEFT && albedo.powi(bounces as i32 - 1) > LEFT, "{albedo}");
+        }
+        assert_eq!((bounces_for(0.0), bounces_for(1.0)), (1, MOST_BOUNCES));
+    }
+}

@@ -1,0 +1,57 @@
+//! The indirect illumination map: final gathering at texels.
+
+use super::formats::{FLOATS4, WORD};
+use super::options::LightmapsOptions;
+use super::texels::LightTexels;
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::lightmaps::{Gather, GatherPush};
+
+/// Steps that the loops of one ray may take: through the hierarchy, and where it ends.
+const STEPS: u32 = 1024;
+
+/// Texels to gather: groups of 64 in three words and how many there are; their numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Chosen {
+    pub(super) head: BufferRef<u32>,
+    pub(super) list: BufferRef<u32>,
+}
+
+/// Declares passes that gather all texels.
+pub(super) fn all(
+    graph: &mut Graph<'_>,
+    texels: &LightTexels,
+    aim: BufferRef<[f32; 4]>,
+    options: &LightmapsOptions,
+) -> BufferRef<[f32; 4]> {
+    let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count());
+    graph.fill_buffer("diffuse/lightmaps/iim/clear", gathered, 0);
+    gather(graph, texels, (aim, gathered), Chosen { head: texels.head, list: texels.used }, options);
+    gathered
+}
+
+/// Declares passes that gather those that are chosen; the others stand.
+pub(super) fn gather(
+    graph: &mut Graph<'_>,
+    texels: &LightTexels,
+    (aim, gathered): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    chosen: Chosen,
+    options: &LightmapsOptions,
+) {
+    let most = ((graph.traits().loop_steps + 1) / STEPS).max(1);
+    for (number, first) in (0..options.rays).step_by(most as usize).enumerate() {
+        let end = (first + most).min(options.rays);
+        let pass = Gather {
+            scene_rays: texels.rays.clone(),
+            lightmap: texels.group.clone(),
+            received: aim.texels(FLOATS4),
+            list: chosen.list.texels(WORD),
+            head: chosen.head.texels(WORD),
+            gathered: gathered.read_write(),
+            push: GatherPush { first, end, count: options.rays },
+        };
+        let pass = graph.pass(&format!("diffuse/lightmaps/iim/gather.{number}"), pass);
+        let pass = pass.note("rays a texel", u64::from(end - first)).count("texels", chosen.head, 3);
+        pass.threads_indirect(chosen.head, 0);
+    }
+}

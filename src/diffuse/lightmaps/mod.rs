@@ -1,0 +1,76 @@
+//! `lightmaps`: indirect light in light maps (Larsen & Christensen 2004). Their texels are few, are renewed where light changed, and stand while it does not.
+//!
+//! 1. Texels on all diffuse surfaces, and links between them: rays traced once (`texels.rs`). They stand while geometry and materials do.
+//! 2. The approximated illumination map (AIM): all light that texels receive, of the lights by shadow rays, of other texels along links (`aim.rs`). It stands while
+//!    lights do.
+//! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), all of them, or as many a frame as the options say
+//!    (`renewal.rs`).
+//! 4. Pixels interpolate the IIM (`shade.rs`). That alone follows the camera.
+
+mod aim;
+mod formats;
+mod iim;
+pub(crate) mod options;
+mod renewal;
+mod shade;
+#[cfg(test)]
+mod tests;
+mod texels;
+
+use self::aim::Approximated;
+use self::options::{LightmapsOptions, LightmapsSettle};
+use self::renewal::renewed;
+use self::texels::LightTexels;
+use crate::graph::bindings::ImageRef;
+use crate::method::{Error, FrameCx, Inputs, Method, Rays};
+use crate::scene::Facts;
+use crate::slot::{LightPaths, Slot};
+
+/// Light maps.
+pub(crate) struct Lightmaps;
+
+impl Method for Lightmaps {
+    const NAME: &'static str = "lightmaps";
+    const SLOT: Slot = Slot::Diffuse;
+    type Options = LightmapsOptions;
+    const LIGHTS_MIRRORED: bool = true;
+
+    fn light_paths(options: &LightmapsOptions) -> LightPaths {
+        LightPaths::up_to(options.bounces)
+    }
+
+    fn inputs(_: &LightmapsOptions) -> Inputs {
+        Inputs { rays: Rays::ToLights, ..Inputs::default() }
+    }
+
+    fn shaders(_: &LightmapsOptions, _: bool) -> Vec<&'static str> {
+        vec!["lightmaps/*"]
+    }
+
+    fn skip(options: &LightmapsOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.diffuse, facts.lit(), options.bounces) {
+            (false, ..) => Some("no diffuse surface"),
+            (_, false, _) => Some("no light"),
+            (.., Some(0)) => Some("no bounces asked for"),
+            _ => None,
+        }
+    }
+
+    fn lead_in(options: &LightmapsOptions) -> u32 {
+        if options.settle == LightmapsSettle::Never { 32 } else { 0 }
+    }
+
+    fn declare(cx: &mut FrameCx<'_, '_>, options: &LightmapsOptions) -> Result<Option<ImageRef>, Error> {
+        let Some(scene) = cx.rays() else { return Ok(None) };
+        let Some(texels) = LightTexels::declare(cx.graph, scene, options) else { return Ok(None) };
+        let light = Approximated::declare(cx.graph, scene, &texels, options);
+        let shown = match options.settle {
+            LightmapsSettle::Always => {
+                let aim = light.settled(cx.graph, &texels);
+                iim::all(cx.graph, &texels, aim, options)
+            }
+            LightmapsSettle::First | LightmapsSettle::Never => renewed(cx.graph, scene, &texels, &light, options),
+        };
+        Ok(Some(shade::shade(cx, scene, &texels, shown)))
+    }
+}

@@ -1,0 +1,38 @@
+//! Options of `lightmaps`.
+
+use crate::method::{OptionKind, choices, options};
+
+choices! {
+    /// When all texels are renewed in one frame, whatever `texels` says.
+    LightmapsSettle {
+        /// In frames without a past: a picture by itself shows the settled maps.
+        First = "first",
+        /// In every frame in which something changed.
+        Always = "always",
+        /// Never: the paper.
+        Never = "never",
+    }
+}
+
+options! {
+    /// Options of the `lightmaps` diffuse method (Larsen & Christensen 2004).
+    LightmapsOptions, "lightmaps":
+    /// Side of a texel; 0: by `count`.
+    texel: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
+    /// Texels on the area of all surfaces; many small surfaces take up to twice as many.
+    count: u32 = 16_000, draft = 5_000, high = 48_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
+    /// Rays that a texel is gathered by.
+    rays: u32 = 256, draft = 96, high = 1024; OptionKind::Integer(16, 4096), "rays", "linear";
+    /// Links of each texel, along which light is moved from bounce to bounce before it is gathered.
+    links: u32 = 32, draft = 16, high = 64; OptionKind::Integer(4, 256), "links", "linear";
+    /// Points of emissive surfaces, and directions that look for these and the sky, by which a texel's direct light is estimated.
+    samples: u32 = 32, draft = 16, high = 128; OptionKind::Integer(1, 1024), "rays", "linear";
+    /// Scatterings before the surface that the picture shows. None: until next to nothing of the flux is left.
+    bounces: Option<u32> = None; OptionKind::Limit(0, 64), "scatterings", "linear";
+    /// When all texels are renewed in one frame.
+    settle: LightmapsSettle = LightmapsSettle::First, paper = LightmapsSettle::Never; OptionKind::Choice(LightmapsSettle::NAMES), "", "";
+    /// Texels that a frame renews at most, those first whose light changed most.
+    texels: u32 = 512, draft = 256, high = 2048, paper = 20; OptionKind::Integer(1, 1_000_000), "texels", "linear";
+    /// Share of what is left to a texel's new light that a frame goes; 1: at once.
+    blend: f64 = 0.5; OptionKind::Number(0.01, 1.0), "", "";
+}

@@ -1,0 +1,161 @@
+//! Light maps against closed forms and paths, and what stands when something changes.
+
+mod frames;
+
+use glam::{DAffine3, DVec3};
+
+use super::options::{LightmapsOptions, LightmapsSettle};
+use crate::gpu_tests::against_paths::{against_paths, leaks};
+use crate::gpu_tests::scenes::{add_light, box_faces, builtin, closed_box, floor, lambert, place, quad, request, view};
+use crate::gpu_tests::session::Session;
+use crate::method::{Options, Preset};
+use crate::renderer::{DiffuseMethod, Settings, Slot, Technique};
+use crate::scene::{CameraView, LightKind, Material, Scene};
+
+/// Few and coarse texels.
+fn options() -> LightmapsOptions {
+    LightmapsOptions { count: 4000, rays: 128, ..LightmapsOptions::preset(Preset::Default) }
+}
+
+fn settings(options: LightmapsOptions) -> Settings {
+    let mut settings = Settings::new(Technique::Direct, Preset::Default);
+    settings.methods.diffuse = DiffuseMethod::Lightmaps;
+    Settings { lightmaps: options, ..settings }
+}
+
+/// A room of which one wall is missing, under a sky.
+fn open_room() -> (Scene, CameraView) {
+    let mut scene = Scene::empty("open room");
+    let wall = scene.add_material(lambert([0.6, 0.5, 0.4])).expect("a sound material");
+    let mut faces = box_faces([1.0; 3], [wall; 6]);
+    faces.truncate(5);
+    place(&mut scene, faces, DAffine3::IDENTITY);
+    scene.set_sky([1.0, 1.2, 1.5]);
+    (scene, view(DVec3::new(0.2, 0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A closed box with a square lamp in it.
+fn lamp_box() -> (Scene, CameraView) {
+    let mut scene = closed_box(1.0, lambert([0.7, 0.5, 0.3]));
+    let lamp = scene.add_material(Material { emissive: [5.0; 3], ..lambert([0.0; 3]) }).expect("a sound material");
+    let corners = [[-0.3, 0.7, -0.3], [0.3, 0.7, -0.3], [0.3, 0.7, 0.3], [-0.3, 0.7, 0.3]];
+    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
+    (scene, view(DVec3::new(0.1, -0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A floor under the sun, and a wall that it lights.
+fn sunlit_corner() -> (Scene, CameraView) {
+    let mut scene = floor(1.0, lambert([0.7; 3]));
+    let wall = scene.add_material(lambert([0.7, 0.2, 0.2])).expect("a sound material");
+    let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 2.0, -1.0], [-1.0, 2.0, -1.0]];
+    place(&mut scene, vec![quad(corners, wall)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.2, -1.0, -0.7), [3.0; 3]);
+    (scene, view(DVec3::new(0.0, 1.0, 1.5), DVec3::new(0.0, 0.5, -1.0)))
+}
+
+fn with_camera(name: &str) -> (Scene, CameraView) {
+    let scene = builtin(name);
+    let camera = scene.camera_view(None).expect("its camera");
+    (scene, camera)
+}
+
+/// In a closed box of albedo ρ that emits L_e everywhere, radiance is L_e/(1 − ρ): of it ρ²·L_e/(1 − ρ) was scattered twice or more often, at every point.
+#[test]
+fn a_furnace_is_even() {
+    let session = Session::open();
+    let (scene, camera) = with_camera("furnace");
+    let frame = session.render(&scene, &settings(options()), &request([32, 24], camera, &[Slot::Diffuse]));
+    let pixels = &frame.slots[&Slot::Diffuse].pixels;
+    let values = || pixels.iter().flatten().map(|&value| f64::from(value));
+    let mean = values().sum::<f64>() / (3 * pixels.len()) as f64;
+    let farthest = values().map(|value| (value - 0.5).abs()).fold(0.0, f64::max);
+    println!("mean {mean:.4}, farthest {farthest:.4}");
+    assert!((mean - 0.5).abs() < 0.003 && farthest < 0.02, "{mean} {farthest}");
+}
+
+/// Every kind of light, few bounces and all.
+#[test]
+fn pictures_are_those_of_paths() {
+    let session = Session::open();
+    let cases = [
+        ("cornell-point", with_camera("cornell-point"), None),
+        ("cornell-point", with_camera("cornell-point"), Some(1)),
+        ("cornell-point", with_camera("cornell-point"), Some(3)),
+        ("cornell-spot", with_camera("cornell-spot"), None),
+        ("lamp", lamp_box(), None),
+        ("sky", open_room(), None),
+        ("sun", sunlit_corner(), None),
+    ];
+    for (name, (scene, camera), bounces) in cases {
+        let settings = settings(LightmapsOptions { bounces, ..options() });
+        let (ratio, error) = against_paths(&session, &scene, camera, &settings, (128, bounces));
+        println!("{name}, {bounces:?} bounces: mean {ratio:.3}, blocks {error:.3}");
+        assert!((ratio - 1.0).abs() < 0.025 && error < 0.05, "{name}, {bounces:?} bounces: {ratio} {error}");
+    }
+}
+
+#[test]
+fn light_stays_out_of_dark_rooms() {
+    let found = leaks(&Session::open(), &settings(options()), [32, 24]);
+    println!("{found:?} of the lit hall's light");
+    assert!(found.iter().all(|&share| share < 1e-3), "{found:?} of the lit hall's light");
+}
+
+/// Neither the unit of length nor that of light matters.
+#[test]
+fn units_do_not_matter() {
+    let session = Session::open();
+    let picture = |scale: f64, light: f32| {
+        let mut scene = closed_box(1.0, lambert([0.6, 0.5, 0.7]));
+        let node = scene.nodes().len() - 1;
+        scene
+            .set_local_transform(crate::scene::NodeId(node), DAffine3::from_scale(DVec3::splat(scale)))
+            .expect("sound");
+        let intensity = light * (scale * scale) as f32;
+        add_light(&mut scene, LightKind::Point, DVec3::new(0.1, 0.3, -0.2) * scale, DVec3::NEG_Y, [intensity; 3]);
+        let camera = view(DVec3::new(0.7, 0.6, 0.8) * scale, DVec3::ZERO);
+        let frame = session.render(&scene, &settings(options()), &request([24, 16], camera, &[Slot::Diffuse]));
+        frame.slots[&Slot::Diffuse].pixels.clone()
+    };
+    let expected = picture(1.0, 1.0);
+    for (scale, light, within) in [(1.0, 1024.0_f32, 1e-6), (64.0, 1.0, 1e-3), (1.0 / 64.0, 1.0, 1e-3)] {
+        for (found, expected) in picture(scale, light).iter().flatten().zip(expected.iter().flatten()) {
+            assert!(
+                (found - light * expected).abs() <= within * light * expected,
+                "{scale} {light}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn scenes_without_need_pay_nothing() {
+    let session = Session::open();
+    let reason = |scene: &Scene, bounces| {
+        let camera = view(DVec3::new(0.7, 0.6, 0.8), DVec3::ZERO);
+        let settings = settings(LightmapsOptions { bounces, ..options() });
+        let frame = session.render(scene, &settings, &request([8, 8], camera, &[Slot::Diffuse]));
+        let row = frame.timings.passes.into_iter().find(|pass| pass.full_name().starts_with("diffuse/lightmaps"));
+        row.and_then(|row| row.skipped).expect("a reason")
+    };
+    assert_eq!(reason(&closed_box(1.0, lambert([0.5; 3])), None), "no light");
+    assert_eq!(reason(&lamp_box().0, Some(0)), "no bounces asked for");
+    let mut metal = closed_box(1.0, Material { metallic: 1.0, ..lambert([0.5; 3]) });
+    add_light(&mut metal, LightKind::Point, DVec3::ZERO, DVec3::NEG_Y, [1.0; 3]);
+    assert_eq!(reason(&metal, None), "no diffuse surface");
+}
+
+/// A picture without a past, or one in which everything is renewed whenever something changed: the same light.
+#[test]
+fn settling_at_once_and_always_are_the_same() {
+    let session = Session::open();
+    let (scene, camera) = with_camera("cornell-point");
+    let asked = request([24, 16], camera, &[Slot::Diffuse]);
+    let [first, always] = [LightmapsSettle::First, LightmapsSettle::Always]
+        .map(|settle| session.render(&scene, &settings(LightmapsOptions { settle, ..options() }), &asked));
+    for (a, b) in
+        first.slots[&Slot::Diffuse].pixels.iter().flatten().zip(always.slots[&Slot::Diffuse].pixels.iter().flatten())
+    {
+        assert!((a - b).abs() <= 1e-5 * b, "{a} {b}");
+    }
+}

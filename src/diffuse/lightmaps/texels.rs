@@ -1,0 +1,115 @@
+//! Texels where they lie, which of them lie in the open, which cells are cut, and links. They stand while geometry and materials do.
+
+use std::sync::Arc;
+
+use super::formats::{WORD, WORDS4};
+use super::options::LightmapsOptions;
+use crate::frame::rays::{Lightmap, Texels, TracedScene};
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::groups::{Lightmap as LightmapGroup, Lobes, SceneRays};
+use crate::shaders::lightmaps::{Cuts, CutsPush, Links, LinksPush, Place, PlacePush, Probe, ProbePush};
+
+/// The texels of a frame.
+pub(super) struct LightTexels {
+    pub(super) map: Arc<Lightmap>,
+    pub(super) rays: SceneRays,
+    pub(super) group: LightmapGroup,
+    /// Those that are read: groups of 64 in three words, their number; and the numbers of all.
+    pub(super) head: BufferRef<u32>,
+    pub(super) used: BufferRef<u32>,
+    /// Link i of all texels after link i − 1 of all.
+    pub(super) links: BufferRef<[u32; 2]>,
+    pub(super) link_count: u32,
+    /// What comes of emissive surfaces and of the sky by way of mirrors.
+    pub(super) arrivals: BufferRef<[f32; 4]>,
+}
+
+impl LightTexels {
+    /// Declares the passes; `None` if no surface has texels.
+    pub(super) fn declare(
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        options: &LightmapsOptions,
+    ) -> Option<LightTexels> {
+        let wanted = if options.texel > 0.0 { Texels::Size(options.texel) } else { Texels::Count(options.count) };
+        let map = scene.lightmap(wanted);
+        let texel_count = map.count;
+        if map.used.is_empty() {
+            graph.skip("diffuse/lightmaps", "no surface that light falls on");
+            return None;
+        }
+        let (threads, count) = ([texel_count, 1, 1], texel_count as usize);
+        let rays = scene.rays(graph);
+        let charts = map.charts(graph);
+        let placed = graph.buffer::<[u32; 4]>("lightmaps.texels", 2 * count);
+        let pass = Place {
+            scene_rays: rays.clone(),
+            places: map.places(graph),
+            charts: charts.clone(),
+            texels_out: placed.write(),
+            push: PlacePush { texel_count },
+        };
+        let pass = graph.pass("diffuse/lightmaps/texels/place", pass).note("surfaces", u64::from(map.surface_count));
+        pass.note("texels", map.used.len() as u64).threads(threads);
+
+        let valid = graph.buffer::<u32>("lightmaps.valid", count);
+        let mut group = LightmapGroup {
+            lightmap_charts: charts,
+            lightmap_texels: placed.texels(WORDS4),
+            lightmap_flags: valid.texels(WORD),
+        };
+        let pass = Probe {
+            scene_rays: rays.clone(),
+            lightmap: group.clone(),
+            valid: valid.write(),
+            push: ProbePush { texel_count },
+        };
+        graph.pass("diffuse/lightmaps/texels/probe", pass).threads(threads);
+        let flags = graph.buffer::<u32>("lightmaps.flags", count);
+        let counts = graph.buffer::<u32>("lightmaps.cut_counts", 2);
+        graph.fill_buffer("diffuse/lightmaps/texels/clear", counts, 0);
+        let pass = Cuts {
+            scene_rays: rays.clone(),
+            lightmap: group.clone(),
+            valid: valid.texels(WORD),
+            flags: flags.write(),
+            counts: counts.read_write(),
+            push: CutsPush { texel_count },
+        };
+        let pass = graph.pass("diffuse/lightmaps/texels/cuts", pass);
+        pass.count("hidden", counts, 0).count("cut", counts, 1).threads(threads);
+        group.lightmap_flags = flags.texels(WORD);
+
+        let link_count = options.links;
+        let links = graph.buffer::<[u32; 2]>("lightmaps.links", count * link_count as usize);
+        let arrivals = graph.buffer::<[f32; 4]>("lightmaps.arrivals", 2 * count);
+        let facts = &scene.facts;
+        let pass = Links {
+            scene_rays: rays.clone(),
+            lightmap: group.clone(),
+            lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
+            links: links.write(),
+            arrivals: arrivals.write(),
+            push: LinksPush { texel_count, link_count },
+        };
+        let pass = graph.pass("diffuse/lightmaps/texels/links", pass);
+        pass.note("rays", map.used.len() as u64 * u64::from(link_count)).threads(threads);
+        let used = map.used(graph);
+        let number = map.used.len() as u32;
+        let head = graph.upload(
+            "lightmaps.used_head",
+            &[number.div_ceil(64), 1, 1, number],
+            crate::graph::Dependence::GEOMETRY,
+        );
+        Some(LightTexels { map, rays, group, head, used, links, link_count, arrivals })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.map.count as usize
+    }
+
+    pub(super) fn threads(&self) -> [u32; 3] {
+        [self.map.count, 1, 1]
+    }
+}
