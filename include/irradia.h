@@ -714,6 +714,8 @@ typedef struct {
     uint32_t reserved;
     // Rays that these took.
     uint64_t rays;
+    // Bytes of `upload_ms`: vertices, instances, materials, textures, as rasterisers read them.
+    uint64_t upload_bytes;
 } irradia_timings_descriptor;
 
 // One pass. The texts stand as long as the frame does.

@@ -94,6 +94,7 @@ class _TimingsDescriptor(_Descriptor):
         ("samples", ctypes.c_uint32),
         ("reserved", ctypes.c_uint32),
         ("rays", ctypes.c_uint64),
+        ("upload_bytes", ctypes.c_uint64),
     ]
 
 

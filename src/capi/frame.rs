@@ -206,7 +206,9 @@ pub unsafe extern "C" fn irradia_render(
         let points = given.wait_count > 0 || given.signal_count > 0;
         match shared.context.shared_device().timelines_of_host() {
             None if points || given.target_count > 0 => {
-                return Err(Fault::argument("targets and semaphores are of the context's device, which here is the library's own"));
+                return Err(Fault::argument(
+                    "targets and semaphores are of the context's device, which here is the library's own",
+                ));
             }
             Some(false) if points => {
                 return Err(Fault::argument("the host's device was created without the feature timelineSemaphore"));

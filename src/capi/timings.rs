@@ -31,6 +31,8 @@ pub struct TimingsDescriptor {
     pub reserved: u32,
     /// Rays that these took.
     pub rays: u64,
+    /// Bytes of `upload_ms`: vertices, instances, materials, textures, as rasterisers read them.
+    pub upload_bytes: u64,
 }
 
 /// One pass. The texts stand as long as the frame does.
@@ -83,6 +85,7 @@ pub unsafe extern "C" fn irradia_frame_timings(frame: *const FrameHandle, timing
             samples: estimate.map_or(0, |estimate| estimate.spp),
             reserved: 0,
             rays: estimate.map_or(0, |estimate| estimate.rays),
+            upload_bytes: cost.upload_bytes,
         };
         // SAFETY: as above.
         unsafe { write(timings, &descriptor) }

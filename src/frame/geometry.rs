@@ -19,7 +19,7 @@ impl Geometry {
         let placed = Dependence::GEOMETRY;
         let (instance_key, material_key) = (data.instance_key, data.material_key);
         let instances =
-            graph.import_buffer::<types::Instance>("scene.instances", &data.instances, instance_key, placed);
+            graph.import_buffer::<types::Instance>("scene.instances", data.instances(), instance_key, placed);
         let indices = graph.import_buffer::<u32>("scene.indices", &data.meshes.indices, instance_key, placed);
         let positions =
             graph.import_buffer::<f32>("scene.positions", &data.meshes.positions.buffer, instance_key, placed);

@@ -1,14 +1,10 @@
 //! Instances on the device and as the host draws them; their area.
 
-use std::sync::Arc;
-
-use ash::vk;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::materials::{is_cut, texture_kinds};
 use crate::scene::{Alpha, Cutout, Instance, Material, Primitive, Scene, has_specular_lobe};
 use crate::shaders::types;
-use crate::vulkan::{Buffer, Device, VulkanError, buffer_with};
 
 /// A primitive among all meshes' data.
 #[derive(Clone, Copy)]
@@ -86,12 +82,12 @@ pub(super) fn surface_area(scene: &Scene, places: &[Vec<Place>], reach: f64) -> 
     scene.instances().iter().filter(|instance| scene.is_within(instance, reach)).map(area).sum()
 }
 
-pub(super) fn upload_instances(
-    device: &Arc<Device>,
+/// The records of all instances, and how each is drawn.
+pub(super) fn instances_of(
     scene: &Scene,
     (places, cutouts): (&[Vec<Place>], &[Cutout]),
     reach: f64,
-) -> Result<(Arc<Buffer>, Vec<DrawnInstance>), VulkanError> {
+) -> (Vec<types::Instance>, Vec<DrawnInstance>) {
     let origin = scene.extent().origin;
     let mut records = Vec::new();
     let mut drawn = Vec::new();
@@ -116,13 +112,7 @@ pub(super) fn upload_instances(
         }
         drawn.push(drawn_instance);
     }
-    let buffer = buffer_with(
-        device,
-        "scene.instances",
-        bytemuck::cast_slice(&records),
-        vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER,
-    )?;
-    Ok((buffer, drawn))
+    (records, drawn)
 }
 
 const FLAT_NORMALS: u32 = 1;

@@ -25,6 +25,7 @@ mod plane_depth;
 pub(crate) mod rays;
 pub(crate) mod regions;
 pub(crate) mod scene_data;
+mod sent_list;
 pub(crate) mod textures;
 pub(crate) mod tonemap;
 #[cfg(test)]

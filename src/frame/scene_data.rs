@@ -8,11 +8,13 @@ use glam::{DMat3, DVec3};
 use super::closed_meshes::solids;
 use super::drawn_triangles::DrawnTriangles;
 pub(crate) use super::instances::DrawnInstance;
-use super::instances::{Place, area_of, surface_area, upload_instances};
+use super::instances::{Place, area_of, instances_of, surface_area};
 use super::materials::{cutouts_of, upload_materials};
+use super::sent_list::SentList;
 use super::textures::MaterialTextureSets;
 use crate::graph::hash_of;
 use crate::scene::{Cutout, Extent, Primitive, Scene, Shape};
+use crate::shaders::types;
 use crate::vulkan::{Buffer, Device, Pipelines, VulkanError, buffer_with};
 
 /// A vertex stream that some primitives may lack; a scene in which all lack it binds one element with stride 0.
@@ -55,7 +57,9 @@ pub(crate) struct SceneData {
     pub(crate) area: f64,
     pub(crate) meshes: MeshData,
     mesh_key: u64,
-    pub(crate) instances: Arc<Buffer>,
+    instances: SentList<types::Instance>,
+    /// Bytes sent to the device so far, but for the list of instances.
+    sent: u64,
     pub(crate) instance_key: u64,
     pub(crate) drawn: Vec<DrawnInstance>,
     pub(crate) materials: Arc<Buffer>,
@@ -80,19 +84,26 @@ impl SceneData {
         let Extent { origin, middle, radius } = scene.extent();
         let place = origin.to_array().map(f64::to_bits);
         let instance_key = hash_of(&(scene.identity(), revisions.geometry, revisions.materials, place));
-        let Some(mut data) = held.filter(|data| data.identity == scene.identity() && data.mesh_key == mesh_key) else {
-            return SceneData::new(device, pipelines, scene, [mesh_key, material_key, instance_key]);
+        let held = held.filter(|data| data.identity == scene.identity());
+        let sent = held.as_ref().map_or(0, SceneData::sent);
+        let Some(mut data) = held.filter(|data| data.mesh_key == mesh_key) else {
+            let mut data = SceneData::new(device, pipelines, scene, [mesh_key, material_key, instance_key])?;
+            data.sent += sent;
+            return Ok(data);
         };
         if data.material_key != material_key {
             let made = upload_materials(device, pipelines, scene)?;
             (data.materials, data.material_textures, data.texture_sets) = made;
             data.cutouts = cutouts_of(scene);
             data.material_key = material_key;
+            data.sent += data.material_bytes();
         }
         if data.instance_key != instance_key {
             (data.origin, data.middle_rs, data.radius, data.reach) = (origin, middle - origin, radius, scene.reach());
             let meshes = (&data.meshes.places[..], &data.cutouts[..]);
-            (data.instances, data.drawn) = upload_instances(device, scene, meshes, data.reach)?;
+            let (records, drawn) = instances_of(scene, meshes, data.reach);
+            data.instances.update(device, records)?;
+            data.drawn = drawn;
             data.area = surface_area(scene, &data.meshes.places, data.reach);
             data.instance_key = instance_key;
         }
@@ -109,8 +120,8 @@ impl SceneData {
         let meshes = MeshData::upload(device, scene)?;
         let (materials, material_textures, texture_sets) = upload_materials(device, pipelines, scene)?;
         let cutouts = cutouts_of(scene);
-        let (instances, drawn) = upload_instances(device, scene, (&meshes.places, &cutouts), reach)?;
-        Ok(SceneData {
+        let (records, drawn) = instances_of(scene, (&meshes.places, &cutouts), reach);
+        let mut data = SceneData {
             identity: scene.identity(),
             origin,
             middle_rs: middle - origin,
@@ -119,7 +130,8 @@ impl SceneData {
             area: surface_area(scene, &meshes.places, reach),
             meshes,
             mesh_key,
-            instances,
+            instances: SentList::new(device, "scene.instances", records)?,
+            sent: 0,
             instance_key,
             drawn,
             materials,
@@ -127,7 +139,24 @@ impl SceneData {
             material_key,
             texture_sets,
             cutouts,
-        })
+        };
+        data.sent = data.bytes() - data.instances.buffer.bytes();
+        Ok(data)
+    }
+
+    /// Names a record for each instance.
+    pub(crate) fn instances(&self) -> &Arc<Buffer> {
+        &self.instances.buffer
+    }
+
+    /// Bytes that were sent to the device so far.
+    pub(crate) fn sent(&self) -> u64 {
+        self.sent + self.instances.sent
+    }
+
+    fn material_bytes(&self) -> u64 {
+        let textures = self.texture_sets.as_ref().map_or(0, MaterialTextureSets::bytes);
+        self.materials.bytes() + self.material_textures.bytes() + textures
     }
 
     /// Device memory that the scene holds, bytes.
@@ -136,9 +165,7 @@ impl SceneData {
         let [texcoord0, texcoord1] = &meshes.texcoords;
         let streams = [&meshes.positions, &meshes.normals, &meshes.tangents, texcoord0, texcoord1, &meshes.colors];
         let streams: u64 = streams.iter().map(|stream| stream.buffer.bytes()).sum();
-        let buffers = [&meshes.indices, &self.instances, &self.materials, &self.material_textures];
-        let buffers: u64 = buffers.iter().map(|buffer| buffer.bytes()).sum();
-        streams + buffers + self.texture_sets.as_ref().map_or(0, MaterialTextureSets::bytes)
+        streams + meshes.indices.bytes() + self.instances.buffer.bytes() + self.material_bytes()
     }
 
     /// The kinds of textures, as the shaders' bits, that the instances which `takes` accepts read.

@@ -6,7 +6,8 @@ use super::scenes::{add_light, builtin, closed_box, lambert, place, quad, reques
 use super::session::Session;
 use crate::method::Error;
 use crate::renderer::{FrameRequest, Progress, Technique};
-use crate::scene::{LightKind, MeshId, Scene};
+use crate::scene::{LightKind, Mesh, MeshId, Node, NodeId, Scene};
+use crate::shaders::types;
 use crate::slot::Slot;
 use crate::vulkan::VulkanError;
 use std::sync::{Arc, Mutex};
@@ -43,6 +44,50 @@ fn vertices_move_between_frames() {
             assert!(after.slots[&slot] == fresh.slots[&slot], "{technique:?}: {slot} is not that of a fresh scene");
         }
     }
+}
+
+/// Of many instances those that moved are sent, and nothing else; a material alone sends no instance.
+#[test]
+fn what_changed_is_sent_and_nothing_else() {
+    const COUNT: usize = 10_000;
+    const MOVED: usize = 1_000;
+    let session = Session::open();
+    let mut scene = Scene::empty("many");
+    let material = scene.add_material(lambert([0.5; 3])).expect("it is sound");
+    let corners = [[-0.4, 0.0, 0.4], [0.4, 0.0, 0.4], [0.4, 0.0, -0.4], [-0.4, 0.0, -0.4]];
+    let mesh = Mesh { primitives: vec![quad(corners, material)], ..Mesh::default() };
+    let mesh = scene.add_mesh(mesh).expect("it is sound");
+    let place = |index: usize, height: f64| {
+        DAffine3::from_translation(DVec3::new((index % 100) as f64, height, (index / 100) as f64))
+    };
+    for index in 0..COUNT {
+        let node = Node { mesh: Some(mesh), local: place(index, 0.0), ..Node::default() };
+        scene.add_node(node).expect("it is sound");
+    }
+    let light = add_light(
+        &mut scene,
+        LightKind::Directional,
+        DVec3::ZERO,
+        DVec3::new(0.1, -1.0, 0.2),
+        [3.0; 3],
+    );
+    let settings = settings_of(Technique::Direct, &[]);
+    let request = request([64, 64], view(DVec3::new(50.0, 60.0, 120.0), DVec3::new(50.0, 0.0, 50.0)), &[Slot::Direct]);
+    let mut renderer = session.renderer(&settings);
+    let first = renderer.render(&scene, &request).expect("a frame");
+    let record = size_of::<types::Instance>();
+    assert!(first.timings.upload_bytes > (COUNT * record) as u64);
+    let still = renderer.render(&scene, &request).expect("a frame");
+    assert_eq!(still.timings.upload_bytes, 0);
+    let moved: Vec<_> = (0..MOVED).map(|index| (NodeId(7 * index), place(7 * index, 3.0))).collect();
+    scene.animate(&moved).expect("they are there");
+    let after = renderer.render(&scene, &request).expect("a frame");
+    assert_eq!(after.timings.upload_bytes, (MOVED * record) as u64);
+    let fresh = session.render(&scene, &settings, &request);
+    assert!(after.slots == fresh.slots && after.slots != still.slots, "it shows what a fresh renderer shows");
+    let dimmed = crate::scene::Light { intensity: [1.0; 3], ..scene.lights()[light.0].clone() };
+    scene.set_light(light, dimmed).expect("it is sound");
+    assert_eq!(renderer.render(&scene, &request).expect("a frame").timings.upload_bytes, 0);
 }
 
 #[test]

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::barriers::State;
-use super::resource::{Body, Resource};
 use super::interrupt::Interrupt;
+use super::resource::{Body, Resource};
 use crate::vulkan::{Buffer, Device, Image, ImageInfo, Location, Pipelines, Queries, Recorder, VulkanError};
 
 pub(super) struct StoredImage {

@@ -56,6 +56,8 @@ pub struct FrameTimings {
     pub host_ms: f64,
     /// Of the host time: bringing what changed of the scene onto the device, milliseconds.
     pub upload_ms: f64,
+    /// Bytes that this took: vertices, instances, materials, textures, as rasterisers read them. What rays meet is not counted.
+    pub upload_bytes: u64,
     /// Time spent creating pipelines in this frame, milliseconds; zero once they exist.
     pub pipeline_ms: f64,
     /// All passes in the order of their declaration, the skipped ones included.
@@ -71,6 +73,7 @@ impl FrameTimings {
     pub(crate) fn add(&mut self, other: FrameTimings) {
         self.gpu_ms += other.gpu_ms;
         self.upload_ms += other.upload_ms;
+        self.upload_bytes += other.upload_bytes;
         self.pipeline_ms += other.pipeline_ms;
         self.passes.extend(other.passes);
         for (piece, bytes) in other.memory_bytes {

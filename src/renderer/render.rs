@@ -156,6 +156,8 @@ impl Renderer {
 
     fn draw_once(&mut self, scene: &Scene, request: &FrameRequest, means: Option<&Means>) -> Result<Drawn, Error> {
         let start = Instant::now();
+        let held = self.data.as_ref().filter(|data| data.identity == scene.identity());
+        let sent = held.map_or(0, |data| data.sent());
         let traced = self.prepare(scene, request)?;
         let upload_ms = start.elapsed().as_secs_f64() * 1e3;
         let data = self.data.as_ref().expect("prepared above");
@@ -206,6 +208,7 @@ impl Renderer {
             gpu_ms: executed.gpu_ms,
             host_ms: 0.0,
             upload_ms,
+            upload_bytes: data.sent().saturating_sub(sent),
             pipeline_ms: executed.pipeline_ms,
             passes: executed.passes,
             memory_bytes,

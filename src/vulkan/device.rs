@@ -71,8 +71,7 @@ impl Device {
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(survey.queue_family)
             .queue_priorities(&priorities)];
-        let mut features =
-            Features::wanted(&survey.features, survey.traits.texels_in_storage, options.validation);
+        let mut features = Features::wanted(&survey.features, survey.traits.texels_in_storage, options.validation);
         let mut features = features.chain();
         let available = extensions_of(&instance, physical)?;
         let available: Vec<&CStr> = available.iter().filter_map(|name| name.extension_name_as_c_str().ok()).collect();

@@ -2,8 +2,8 @@
 
 #![allow(unsafe_code, reason = "commands of extensions")]
 
-use std::ffi::c_void;
 use ash::{nv, vk};
+use std::ffi::c_void;
 
 use super::crash_markers::Marking;
 use super::device::Device;

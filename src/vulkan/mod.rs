@@ -41,13 +41,13 @@ pub use device::ContextOptions;
 pub(crate) use device::Device;
 #[cfg(feature = "capi")]
 pub(crate) use device::TakeTurns;
-#[cfg(feature = "capi")]
-pub(crate) use hand_out::{ForeignPlace, ForeignTarget, ForeignUse, HandOut, TimelinePoint};
 pub(crate) use draw::{Attachment, Attachments};
 pub use error::VulkanError;
-pub use instance::Validation;
+#[cfg(feature = "capi")]
+pub(crate) use hand_out::{ForeignPlace, ForeignTarget, ForeignUse, HandOut, TimelinePoint};
 #[cfg(feature = "capi")]
 pub(crate) use host::{AnyFunction, HostDevice, HostInstance, Requirements};
+pub use instance::Validation;
 pub(crate) use memory::{Buffer, Image, ImageInfo, Location, SubresourceView, texel_bytes};
 #[allow(unused_imports, reason = "passes of the methods to come; tests use it already")]
 pub(crate) use pipelines::StencilState;
@@ -61,4 +61,4 @@ pub use report::DeviceReport;
 pub(crate) use report::{Survey, devices};
 pub(crate) use storage_texels::TexelFormats;
 pub(crate) use traits::DeviceTraits;
-pub(crate) use transfer::{buffer_with, image_with};
+pub(crate) use transfer::{buffer_with, image_with, overwrite};

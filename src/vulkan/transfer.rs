@@ -31,6 +31,37 @@ pub(crate) fn buffer_with(
     Ok(Arc::new(buffer))
 }
 
+/// Overwrites parts of a buffer of [`buffer_with`], each an offset and its bytes, if nobody else holds it. Whether it was done.
+pub(crate) fn overwrite(
+    device: &Arc<Device>,
+    buffer: &mut Arc<Buffer>,
+    parts: &[(u64, &[u8])],
+) -> Result<bool, VulkanError> {
+    let Some(target) = Arc::get_mut(buffer) else { return Ok(false) };
+    let mut left = Vec::new();
+    for &(offset, bytes) in parts {
+        let place = usize::try_from(offset).unwrap_or(usize::MAX);
+        if !target.write(place, bytes) {
+            left.push((offset, bytes));
+        }
+    }
+    if left.is_empty() {
+        return Ok(true);
+    }
+    let all: Vec<u8> = left.iter().flat_map(|(_, bytes)| *bytes).copied().collect();
+    let staging = staging(device, "parts of a list", &all)?;
+    let mut recorder = Recorder::new(device)?;
+    recorder.begin(&DescriptorCounts::default())?;
+    let mut from = 0;
+    for (offset, bytes) in left {
+        recorder.copy(&staging, from, target, offset, bytes.len() as u64);
+        from += bytes.len() as u64;
+    }
+    recorder.full_barrier();
+    recorder.finish()?;
+    Ok(true)
+}
+
 /// A sampled image of 8-bit texels whose `layers` are given at full size; smaller mip levels are made from them.
 pub(crate) fn image_with(
     device: &Arc<Device>,
