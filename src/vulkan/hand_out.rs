@@ -73,6 +73,8 @@ pub(crate) struct HandOut<'a> {
     pub(crate) size: [u32; 2],
 }
 
+/// Seconds from a fence to the semaphores that are signalled with it.
+const SIGNALLED_WITHIN: f64 = 10.0;
 const EVERYTHING: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,
@@ -131,7 +133,9 @@ impl Recorder {
             };
             points.iter().map(info).collect()
         };
-        self.finish_between(&infos(waits), &infos(signals))
+        self.finish_between(&infos(waits), &infos(signals))?;
+        // Mesa 22.3 may signal the fence a moment before the semaphores of the same submission.
+        self.await_points(signals, SIGNALLED_WITHIN)
     }
 
     fn record_hand_out(&self, copy: &HandOut<'_>) -> Result<(), VulkanError> {

@@ -2,6 +2,7 @@
  *
  *   all OUTPUT     everything in its right use; writes 64 x 48 pixels of three floats of `hybrid`'s image of cornell-point
  *   wrong          everything in its wrong use; nothing may happen but a status and a sentence
+ *   scene          what needs no device
  *   memory COUNT   so many contexts, one after the other, each with a frame
  */
 #include "irradia.h"
@@ -625,6 +626,49 @@ static void check_wrong(void) {
     irradia_context_destroy(context);
 }
 
+/* What needs no device. */
+static void check_scene(void) {
+    irradia_scene *scene = NULL;
+    irradia_scene_bytes bytes = {.size = sizeof bytes};
+    irradia_material_descriptor material = {.size = sizeof material};
+    irradia_light_descriptor light = {.size = sizeof light};
+    irradia_node_descriptor node = {.size = sizeof node};
+    irradia_mesh_descriptor mesh = {.size = sizeof mesh};
+    irradia_camera_descriptor camera = {.size = sizeof camera};
+    irradia_primitive_descriptor primitive;
+    irradia_id material_id, light_id, mesh_id, node_id;
+    double up[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1};
+    char name[16];
+    size_t needed;
+
+    OK(irradia_scene_create(NULL, "by hand", &scene));
+    OK(irradia_material_default(&material));
+    material.name = "white";
+    OK(irradia_scene_add_material(scene, &material, &material_id));
+    primitive = floor_primitive(material_id);
+    mesh.primitives = &primitive;
+    mesh.primitive_count = 1;
+    OK(irradia_scene_add_mesh(scene, &mesh, &mesh_id));
+    OK(irradia_scene_set_mesh(scene, mesh_id, &mesh));
+    light.kind = IRRADIA_LIGHT_DIRECTIONAL;
+    light.intensity[1] = 1;
+    OK(irradia_scene_add_light(scene, &light, &light_id));
+    node.mesh = mesh_id;
+    node.light = light_id;
+    OK(irradia_scene_add_node(scene, &node, &node_id));
+    OK(irradia_scene_set_transforms(scene, &node_id, up, 1));
+    OK(irradia_scene_camera(scene, NULL, &camera));
+    OK(irradia_scene_name(scene, IRRADIA_KIND_MATERIAL, material_id, name, sizeof name, &needed));
+    CHECK(strcmp(name, "white") == 0 && needed == 6);
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_name(scene, IRRADIA_KIND_MATERIAL, material_id, name, 3, &needed));
+    irradia_scene_destroy(scene);
+    bytes.bytes = gltf;
+    bytes.byte_count = sizeof gltf - 1;
+    bytes.read = read_triangle;
+    OK(irradia_scene_from_bytes(NULL, &bytes, NULL, &scene));
+    irradia_scene_destroy(scene);
+}
+
 /* The sanitizer's, where there is one. */
 size_t __sanitizer_get_current_allocated_bytes(void) __attribute__((weak));
 
@@ -664,10 +708,12 @@ int main(int count, char **arguments) {
         check_all(arguments[2]);
     } else if (count == 2 && strcmp(arguments[1], "wrong") == 0) {
         check_wrong();
+    } else if (count == 2 && strcmp(arguments[1], "scene") == 0) {
+        check_scene();
     } else if (count == 3 && strcmp(arguments[1], "memory") == 0) {
         check_memory(atoi(arguments[2]));
     } else {
-        fprintf(stderr, "host all OUTPUT | wrong | memory COUNT\n");
+        fprintf(stderr, "host all OUTPUT | wrong | scene | memory COUNT\n");
         return 2;
     }
     return 0;

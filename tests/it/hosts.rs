@@ -135,6 +135,21 @@ fn nothing_leaks_and_no_memory_is_misused() {
     host.run(&["memory", "30"]);
 }
 
+/// Valgrind knows nothing of what drivers do, and sees all that the library does without one.
+#[test]
+fn scenes_are_built_without_a_fault_of_memory() {
+    let host = Host::c("scene");
+    host.run(&["scene"]);
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        println!("there is no valgrind here");
+        return;
+    }
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args(["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite"]);
+    valgrind.args(["--show-leak-kinds=definite"]).arg(&host.program).arg("scene").env("LD_LIBRARY_PATH", library());
+    succeed(&mut valgrind);
+}
+
 #[test]
 fn the_header_is_c_and_cpp() {
     for (compiler, language, standard) in [("cc", "c", "c99"), ("c++", "c++", "c++17")] {
