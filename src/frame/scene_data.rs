@@ -210,7 +210,7 @@ impl MeshData {
                     .collect::<Result<Vec<_>, VulkanError>>()?,
             );
         }
-        let shapes = scene.shapes().iter().flatten();
+        let shapes = scene.shapes().into_iter();
         let primitives: Vec<(&Primitive, &DrawnTriangles)> = primitives.into_iter().zip(&drawn).collect();
         let centred = |((primitive, drawn), shape): (&(&Primitive, &DrawnTriangles), &Shape)| {
             let center = shape.center;

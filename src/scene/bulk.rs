@@ -16,6 +16,8 @@ impl Scene {
                 let local = self.rest_poses.get(&NodeId(index)).map_or(node.local, Pose::transform);
                 worlds.push(node.parent.map_or(DAffine3::IDENTITY, |parent| worlds[parent.0]) * local);
             }
+            // On all cores, where they are not known yet.
+            self.shapes();
             let things: Vec<_> = self.instances().iter().map(|it| self.shape(it).placed(&worlds[it.node.0])).collect();
             let bulk = Bulk::of(&things);
             bulk.extent(self.bounds_within(bulk.middle, bulk.reach, |it| worlds[it.node.0]))
@@ -47,13 +49,17 @@ impl Scene {
         self.shape(instance).placed(&instance.world).nearest(self.extent().middle) <= reach
     }
 
-    /// Where the bulk of each primitive of each mesh is.
-    pub(crate) fn shapes(&self) -> &[Vec<Shape>] {
-        &self.shapes
+    /// Where the bulk of each primitive of each mesh is, one after the other.
+    pub(crate) fn shapes(&self) -> Vec<&Shape> {
+        let primitives: Vec<_> = self.meshes().iter().flat_map(|mesh| &mesh.primitives).collect();
+        let places: Vec<_> = self.shapes.iter().flatten().collect();
+        primitives.par_iter().zip(places).map(|(primitive, shape)| shape.get_or_init(|| Shape::of(primitive))).collect()
     }
 
+    /// Where the bulk of an instance's primitive is, in the primitive's own space.
     pub(crate) fn shape(&self, instance: &Instance) -> &Shape {
-        &self.shapes[instance.mesh.0][instance.primitive]
+        let shape = &self.shapes[instance.mesh.0][instance.primitive];
+        shape.get_or_init(|| Shape::of(self.primitive(instance)))
     }
 }
 

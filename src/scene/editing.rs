@@ -2,16 +2,11 @@
 //! the rest of the engine need not check again.
 
 use super::camera::Camera;
-use super::extent::Shape;
 use super::light::{Light, LightSpec};
 use super::material::{Material, Texture};
-use super::mesh::Mesh;
 use super::world::{Node, Scene};
-use super::{CameraId, LightId, MaterialId, MeshId, SceneError, TextureId};
+use super::{CameraId, LightId, MaterialId, SceneError, TextureId};
 use glam::{DAffine3, DMat3, DVec3};
-use std::sync::OnceLock;
-
-use rayon::prelude::*;
 
 impl Scene {
     /// Adds a texture.
@@ -61,42 +56,6 @@ impl Scene {
                 }
             }
         }
-        Ok(())
-    }
-
-    /// Adds a mesh; a node must place it before it is seen.
-    ///
-    /// # Errors
-    /// [`SceneError::UnknownId`] if a primitive's material does not exist; [`SceneError::InvalidObject`] if its arrays
-    /// contradict what [`Primitive`](super::Primitive) promises.
-    pub fn add_mesh(&mut self, mesh: Mesh) -> Result<MeshId, SceneError> {
-        self.check_mesh(&mesh)?;
-        self.emissions.push(mesh.primitives.iter().map(|_| OnceLock::new()).collect());
-        self.shapes.push(mesh.primitives.par_iter().map(Shape::of).collect());
-        self.meshes.push(mesh);
-        self.count_mesh();
-        Ok(MeshId(self.meshes.len() - 1))
-    }
-
-    /// Replaces a mesh, for instance one whose vertices moved, wherever nodes place it. It must have as many primitives as before.
-    ///
-    /// # Errors
-    /// As [`Scene::add_mesh`]; [`SceneError::UnknownId`]; [`SceneError::InvalidObject`] if the number of primitives differs.
-    pub fn set_mesh(&mut self, id: MeshId, mesh: Mesh) -> Result<(), SceneError> {
-        self.check("mesh", id.0, self.meshes.len())?;
-        self.check_mesh(&mesh)?;
-        let (old, new) = (self.meshes[id.0].primitives.len(), mesh.primitives.len());
-        if old != new {
-            return Err(self.invalid("mesh", &mesh.name, format!("it has {new} primitives in place of {old}")));
-        }
-        self.shapes[id.0] = mesh.primitives.par_iter().map(Shape::of).collect();
-        self.emissions[id.0] = mesh.primitives.iter().map(|_| OnceLock::new()).collect();
-        let emits = |mesh: &Mesh| mesh.primitives.iter().any(|part| self.materials[part.material.0].emits());
-        let lights = emits(&self.meshes[id.0]) || emits(&mesh);
-        self.meshes[id.0] = mesh;
-        self.count_mesh();
-        self.revisions.lights += u64::from(lights);
-        self.forget_bounds();
         Ok(())
     }
 
@@ -162,39 +121,6 @@ impl Scene {
         let local = DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: spec.position };
         self.add_node(Node { name: spec.light.name.clone(), local, light: Some(light), ..Node::default() })?;
         Ok(light)
-    }
-
-    /// Does with a primitive that a caller made what loading a file does: normals of length one, and tangents where the material has a normal texture.
-    ///
-    /// # Errors
-    /// [`SceneError::UnknownId`]; [`SceneError::InvalidObject`] if an index or the length of an array is at fault.
-    #[cfg(feature = "capi")]
-    pub(crate) fn complete_primitive(&self, name: &str, primitive: &mut super::Primitive) -> Result<(), SceneError> {
-        self.check("material", primitive.material.0, self.materials.len())?;
-        if let Some(fault) = primitive.fault() {
-            return Err(self.invalid("mesh", name, fault));
-        }
-        super::tangents::repair_normals(primitive);
-        match self.materials[primitive.material.0].normal_texture {
-            Some(texture) => super::tangents::complete(primitive, texture),
-            None => primitive.tangents = None,
-        }
-        Ok(())
-    }
-
-    fn count_mesh(&mut self) {
-        self.revisions.geometry += 1;
-        self.revisions.meshes += 1;
-    }
-
-    fn check_mesh(&self, mesh: &Mesh) -> Result<(), SceneError> {
-        for (index, primitive) in mesh.primitives.iter().enumerate() {
-            self.check("material", primitive.material.0, self.materials.len())?;
-            if let Some(fault) = primitive.fault() {
-                return Err(self.invalid("mesh", &mesh.name, format!("primitive {index}: {fault}")));
-            }
-        }
-        Ok(())
     }
 
     fn check_material(&self, material: &Material) -> Result<(), SceneError> {

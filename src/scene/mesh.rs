@@ -2,6 +2,7 @@
 
 use super::{MaterialId, MeshId, NodeId};
 use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
 
 /// A named group of primitives that nodes place together.
 #[derive(Clone, Debug, Default)]
@@ -78,13 +79,14 @@ impl Primitive {
         if let Some(fault) = self.length_fault() {
             return Some(fault);
         }
-        if let Some(vertex) = self.positions.iter().position(|position| !position.iter().all(|axis| axis.is_finite())) {
+        let endless = |position: &[f32; 3]| !position.iter().all(|axis| axis.is_finite());
+        if let Some(vertex) = self.positions.par_iter().position_first(endless) {
             return Some(format!("the position of vertex {vertex} is not finite"));
         }
         if !self.indices.len().is_multiple_of(3) {
             return Some(format!("{} indices do not make whole triangles", self.indices.len()));
         }
-        let highest = self.indices.iter().max().copied();
+        let highest = self.indices.par_iter().max().copied();
         let count = self.positions.len();
         highest
             .filter(|&index| index as usize >= count)

@@ -7,7 +7,7 @@
 //! | file | idea |
 //! |---|---|
 //! | `world` | the [`Scene`]: nodes, transforms, instances, revisions |
-//! | `editing` | adding things to it and changing them |
+//! | `editing`, `mesh_editing` | adding things to it and changing them |
 //! | `mesh`, `material`, `light`, `camera`, `animation` | the things in it |
 //! | `ids` | the indices that name them |
 //! | `camera_choice` | which camera the scene is seen from |
@@ -52,6 +52,7 @@ mod light;
 mod load_options;
 mod material;
 mod mesh;
+mod mesh_editing;
 pub(crate) mod rays;
 mod sampling;
 mod shining;

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::Scene;
-use super::extent::Shape;
 use super::mesh::Primitive;
 
 impl Scene {
@@ -16,11 +15,11 @@ impl Scene {
         let shapes = self.shapes.iter_mut().flatten();
         for ((primitive, shape), emission) in primitives.zip(shapes).zip(self.emissions.iter_mut().flatten()) {
             primitive.split();
-            *shape = Shape::of(primitive);
+            shape.take();
             emission.take();
         }
         self.extent.take();
-        self.revisions.geometry += 1;
+        self.count_mesh();
     }
 }
 

@@ -4,6 +4,7 @@ use super::TextureRef;
 use super::mesh::Primitive;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 /// Coordinates beyond this overflow when MikkTSpace multiplies them; such a primitive gets arbitrary tangents.
 const LARGEST_COORDINATE: f32 = 1e12;
@@ -13,13 +14,12 @@ pub(super) fn repair_normals(primitive: &mut Primitive) {
     let Some(mut normals) = primitive.normals.take() else {
         return;
     };
-    let mut bad = false;
-    for normal in &mut normals {
+    let repair = |normal: &mut [f32; 3]| {
         let unit = Vec3::from(*normal).try_normalize();
-        bad |= unit.is_none();
         *normal = unit.unwrap_or(Vec3::ZERO).to_array();
-    }
-    if bad {
+        unit.is_none()
+    };
+    if normals.par_iter_mut().map(repair).reduce(|| false, |one, other| one | other) {
         for (corners, triangle) in primitive.indices.chunks_exact(3).zip(primitive.triangles()) {
             for &corner in corners {
                 let normal = &mut normals[corner as usize];

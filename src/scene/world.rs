@@ -80,7 +80,7 @@ pub struct Scene {
     pub warnings: Vec<String>,
     pub(super) meshes: Vec<Mesh>,
     /// Of each primitive of each mesh.
-    pub(super) shapes: Vec<Vec<Shape>>,
+    pub(super) shapes: Vec<Vec<OnceLock<Shape>>>,
     pub(super) materials: Vec<Material>,
     pub(super) textures: Vec<Texture>,
     nodes: Vec<Node>,

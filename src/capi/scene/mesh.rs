@@ -208,14 +208,12 @@ unsafe fn mesh(state: &mut SceneState, descriptor: *const MeshDescriptor) -> Res
     });
     let descriptors = descriptors.collect::<Result<Vec<_>, Fault>>()?;
     let shared = Sent(descriptors);
-    state.work(move |scene| {
+    state.work(move |_| {
         let Sent(descriptors) = { shared };
         let mut primitives = Vec::with_capacity(descriptors.len());
         for descriptor in &descriptors {
             // SAFETY: the caller's; the host's memory stays as it is during the call.
-            let mut made = unsafe { primitive(descriptor) }?;
-            scene.complete_primitive(&name, &mut made)?;
-            primitives.push(made);
+            primitives.push(unsafe { primitive(descriptor) }?);
         }
         Ok(Mesh { name, primitives })
     })
@@ -243,7 +241,7 @@ pub unsafe extern "C" fn irradia_scene_add_mesh(
         let state = unsafe { border.enter(scene) }?;
         // SAFETY: as above.
         let mesh = unsafe { mesh(state, descriptor) }?;
-        let MeshId(index) = state.work(|scene| scene.add_mesh(mesh))?;
+        let MeshId(index) = state.work(|scene| scene.add_host_mesh(mesh))?;
         // SAFETY: as above.
         unsafe { give_id(id, index) };
         Ok(())
@@ -263,7 +261,7 @@ pub unsafe extern "C" fn irradia_scene_set_mesh(
         let index = index_of(id, "mesh")?;
         // SAFETY: as above.
         let mesh = unsafe { mesh(state, descriptor) }?;
-        state.work(|scene| scene.set_mesh(MeshId(index), mesh))?;
+        state.work(|scene| scene.set_host_mesh(MeshId(index), mesh))?;
         Ok(())
     })
 }

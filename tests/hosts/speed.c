@@ -1,0 +1,128 @@
+/* What the border costs: speed. A mesh of a million triangles beside a copy of its bytes, and a frame of 64 x 64 pixels beside what the engine itself takes of it. */
+#define _POSIX_C_SOURCE 199309L
+#include "irradia.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define ROUNDS 9
+#define COLUMNS 1000
+#define ROWS 500
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values) {
+    qsort(values, ROUNDS, sizeof *values, ascending);
+    return values[ROUNDS / 2];
+}
+
+static void ok(irradia_status status) {
+    if (status != IRRADIA_OK) {
+        fprintf(stderr, "%s\n", irradia_last_error());
+        exit(1);
+    }
+}
+
+int main(void) {
+    const size_t vertex_count = (COLUMNS + 1) * (ROWS + 1), index_count = 6 * COLUMNS * ROWS;
+    float *positions = malloc(vertex_count * 12), *normals = malloc(vertex_count * 12);
+    uint32_t *indices = malloc(index_count * 4), *index = indices;
+    double copies[ROUNDS], meshes[ROUNDS], calls[ROUNDS], inside[ROUNDS];
+    size_t i, x, y;
+    irradia_context *context = NULL;
+    irradia_scene *scene = NULL;
+    irradia_renderer *renderer = NULL;
+    irradia_material_descriptor material = {.size = sizeof material};
+    irradia_primitive_descriptor primitive = {.size = sizeof primitive};
+    irradia_mesh_descriptor mesh = {.size = sizeof mesh};
+    irradia_renderer_descriptor chosen = {.size = sizeof chosen};
+    irradia_frame_descriptor wanted = {.size = sizeof wanted};
+    irradia_pixels_descriptor target = {.size = sizeof target};
+    static float pixels[64 * 64 * 3];
+
+    for (i = 0; i < vertex_count; ++i) {
+        positions[3 * i] = (float)(i % (COLUMNS + 1));
+        positions[3 * i + 1] = 0;
+        positions[3 * i + 2] = (float)(i / (COLUMNS + 1));
+        normals[3 * i] = normals[3 * i + 2] = 0;
+        normals[3 * i + 1] = 1;
+    }
+    for (y = 0; y < ROWS; ++y) {
+        for (x = 0; x < COLUMNS; ++x) {
+            const uint32_t corner = (uint32_t)(y * (COLUMNS + 1) + x), below = corner + COLUMNS + 1;
+            *index++ = corner, *index++ = below, *index++ = corner + 1;
+            *index++ = corner + 1, *index++ = below, *index++ = below + 1;
+        }
+    }
+    ok(irradia_context_create(NULL, &context));
+    ok(irradia_material_default(&material));
+    primitive.material = 1;
+    primitive.indices = indices;
+    primitive.index_count = index_count;
+    primitive.vertex_count = vertex_count;
+    primitive.positions.data = positions;
+    primitive.normals.data = normals;
+    mesh.primitives = &primitive;
+    mesh.primitive_count = 1;
+    for (i = 0; i < ROUNDS; ++i) {
+        double start = now();
+        char *copy = malloc(vertex_count * 24 + index_count * 4);
+        memcpy(copy, positions, vertex_count * 12);
+        memcpy(copy + vertex_count * 12, normals, vertex_count * 12);
+        memcpy(copy + vertex_count * 24, indices, index_count * 4);
+        copies[i] = now() - start;
+        free(copy);
+        ok(irradia_scene_create(context, NULL, &scene));
+        ok(irradia_scene_add_material(scene, &material, NULL));
+        start = now();
+        ok(irradia_scene_add_mesh(scene, &mesh, NULL));
+        meshes[i] = now() - start;
+        irradia_scene_destroy(scene);
+    }
+    printf("a million triangles: %.2f ms, a copy of their bytes: %.2f ms, ratio %.2f\n", median(meshes), median(copies),
+           median(meshes) / median(copies));
+
+    chosen.technique = "direct";
+    ok(irradia_scene_open(context, "cornell-point", NULL, &scene));
+    ok(irradia_renderer_create(context, &chosen, &renderer));
+    wanted.width = wanted.height = 64;
+    target.slot = IRRADIA_SLOT_IMAGE;
+    target.pixels = pixels;
+    target.byte_count = sizeof pixels;
+    for (i = 0; i < ROUNDS + 2; ++i) {
+        irradia_frame *frame = NULL;
+        irradia_timings_descriptor timings = {.size = sizeof timings};
+        const double start = now();
+        double end;
+        ok(irradia_renderer_invalidate(renderer));
+        ok(irradia_render(renderer, scene, &wanted, &frame));
+        ok(irradia_frame_copy(frame, &target));
+        end = now();
+        ok(irradia_frame_timings(frame, &timings));
+        irradia_frame_destroy(frame);
+        if (i >= 2) {
+            calls[i - 2] = end - start;
+            inside[i - 2] = timings.host_ms;
+        }
+    }
+    printf("a frame of 64x64: %.3f ms of the calls, %.3f ms inside of the engine, ratio %.4f\n", median(calls), median(inside),
+           median(calls) / median(inside));
+    irradia_renderer_destroy(renderer);
+    irradia_scene_destroy(scene);
+    irradia_context_destroy(context);
+    free(positions);
+    free(normals);
+    free(indices);
+    return 0;
+}
