@@ -1,4 +1,7 @@
 //! irradia: a headless Vulkan engine for global illumination.
+//!
+//! [`renderer`] makes frames of a [`scene`]; [`metrics`] says how far they are from a [`reference`](crate::reference). Features: `cli` (the program), `plots` (the module `bench`), `flip` (FLIP among the
+//! errors; compiles C++), all on by default, and `capi` (the C interface).
 
 #[cfg(feature = "plots")]
 pub mod bench;
@@ -11,6 +14,9 @@ pub mod reference;
 pub mod renderer;
 pub mod scene;
 pub mod slot;
+
+/// Vectors and matrices of this interface, in the version that it takes.
+pub use glam;
 
 mod caustics;
 mod diffuse;

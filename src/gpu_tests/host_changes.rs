@@ -64,13 +64,7 @@ fn what_changed_is_sent_and_nothing_else() {
         let node = Node { mesh: Some(mesh), local: place(index, 0.0), ..Node::default() };
         scene.add_node(node).expect("it is sound");
     }
-    let light = add_light(
-        &mut scene,
-        LightKind::Directional,
-        DVec3::ZERO,
-        DVec3::new(0.1, -1.0, 0.2),
-        [3.0; 3],
-    );
+    let light = add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.1, -1.0, 0.2), [3.0; 3]);
     let settings = settings_of(Technique::Direct, &[]);
     let request = request([64, 64], view(DVec3::new(50.0, 60.0, 120.0), DVec3::new(50.0, 0.0, 50.0)), &[Slot::Direct]);
     let mut renderer = session.renderer(&settings);

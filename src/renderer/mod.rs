@@ -50,3 +50,22 @@ pub use crate::image::{ColorImage, ToneMap};
 pub use crate::method::{Error, OptionFault, OptionInfo, OptionKind, Options, Preset, UnknownPreset};
 pub use crate::slot::Slot;
 pub use crate::vulkan::{ContextOptions, CrashMarkers, DeviceReport, Validation, VulkanError};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn everything_may_go_to_another_thread() {
+        fn sent<T: Send>() {}
+        fn shared<T: Sync>() {}
+        sent::<Context>();
+        shared::<Context>();
+        sent::<Renderer>();
+        sent::<Scene>();
+        shared::<Scene>();
+        sent::<Frame>();
+        sent::<Error>();
+    }
+}

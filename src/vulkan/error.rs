@@ -101,8 +101,8 @@ pub enum VulkanError {
     Call {
         /// The call, and what it was for.
         call: String,
-        /// The driver's answer.
-        result: vk::Result,
+        /// The driver's answer, by its name in Vulkan.
+        result: String,
     },
 }
 
@@ -118,7 +118,7 @@ impl<T> Called<T> for Result<T, vk::Result> {
             vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
                 VulkanError::OutOfMemory { what: call.to_owned(), mib: 0.0, last_pass: NO_PASS.to_owned() }
             }
-            result => VulkanError::Call { call: call.to_owned(), result },
+            result => VulkanError::Call { call: call.to_owned(), result: result.to_string() },
         })
     }
 }

@@ -56,7 +56,10 @@ impl Instance {
             unsafe { entry.enumerate_instance_extension_properties(None) }.map_err(|result| match result {
                 // What some loaders answer when no driver's manifest can be read.
                 vk::Result::ERROR_INCOMPATIBLE_DRIVER | vk::Result::ERROR_OUT_OF_HOST_MEMORY => VulkanError::NoDevice,
-                result => VulkanError::Call { call: "vkEnumerateInstanceExtensionProperties".to_owned(), result },
+                result => VulkanError::Call {
+                    call: "vkEnumerateInstanceExtensionProperties".to_owned(),
+                    result: result.to_string(),
+                },
             })?;
         let has = |wanted: &CStr| available.iter().any(|extension| extension.extension_name_as_c_str() == Ok(wanted));
         let layers = if validation == Validation::Off { vec![] } else { vec![validation_layer(&entry)?.as_ptr()] };
@@ -94,7 +97,7 @@ impl Instance {
         // SAFETY: everything `info` points to lives until the end of this function.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
             vk::Result::ERROR_INCOMPATIBLE_DRIVER => VulkanError::NoDevice,
-            result => VulkanError::Call { call: "vkCreateInstance".to_owned(), result },
+            result => VulkanError::Call { call: "vkCreateInstance".to_owned(), result: result.to_string() },
         })?;
         // Dropped before the instance may be, which takes it again.
         drop(alone);
