@@ -13,7 +13,7 @@ use crate::shaders::radiance_maps::{
 const WORD: vk::Format = vk::Format::R32_UINT;
 const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
 /// Maps that memory is held for at first, and texels.
-const LEAST: usize = 2048;
+const LEAST: usize = 1024;
 const LEAST_TEXELS: usize = 1 << 21;
 /// Invocations of a map, which share the groups of lights.
 const LANES: u32 = 64;
