@@ -28,6 +28,8 @@ const uint FILL_FOOTPRINT = 2u;
 const int MOST_PARTS = 4;
 
 layout(constant_id = 4) const uint CACHED = 0u;
+// 1: what rays from the caches to the groups of lights find is known.
+layout(constant_id = 8) const uint KNOWS_SEEN = 0u;
 layout(constant_id = 5) const uint FILL = FILL_FOOTPRINT;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer map_head;
@@ -37,11 +39,14 @@ layout(set = 0, binding = 3) coherent buffer SumBlock { uint sums[]; };
 
 layout(set = 0, binding = 4) readonly buffer HorizonBlock { uint horizons[]; };
 
+layout(set = 0, binding = 5) readonly buffer SeenBlock { uint seen[]; };
+
 layout(push_constant, scalar) uniform Push {
     CacheRays rays;
     int first_group;
     int end_group;
     uint capacity;
+    uint seen_words;  // of a cache
 } push;
 
 const int HELD = CACHED != 0u ? 3 * MAP_TEXELS : 1;
@@ -156,7 +161,12 @@ void write_map() {
     for (int index = push.first_group + int(self); index < end; index += 64) {
         LightGroup group = load_light_group(area_light_groups, index);
         if (shines_any(group, horizon, position_rs)) {
-            float visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
+            float visibility;
+            if (KNOWS_SEEN != 0u) {
+                visibility = float(seen[cache * push.seen_words + uint(index) / 32u] >> (uint(index) & 31u) & 1u);
+            } else {
+                visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
+            }
             for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
                 add_light(first, frame, horizon, load_area_light(number), position_rs, scale * visibility);
             }

@@ -17,13 +17,18 @@
 
 layout(constant_id = 0) const uint BANDS = 3u;
 
+// 1: which groups of lights each cache sees is kept, a bit each, for whoever lights the same caches.
+layout(constant_id = 3) const uint KEEPS_SEEN = 0u;
+
 layout(set = 0, binding = 0) buffer LightBlock { float light[]; };
+layout(set = 0, binding = 1) coherent buffer SeenBlock { uint seen[]; };
 
 layout(push_constant, scalar) uniform Push {
     CacheRays rays;
     int first_group;
     int end_group;
     uint capacity;
+    uint seen_words;  // of a cache
 } push;
 
 const uint NUMBERS = BANDS == 3u ? 28u : 12u;
@@ -46,12 +51,23 @@ void light_cache() {
     if (push.first_group > 0 && push.first_group >= end) {
         return;
     }
+    uint first_word = cache * push.seen_words;
+    if (KEEPS_SEEN != 0u && push.first_group == 0) {
+        for (uint word = self; word < push.seen_words; word += 64u) {
+            seen[first_word + word] = 0u;
+        }
+        memoryBarrierBuffer();
+        barrier();
+    }
     vec3 position_rs = position_of_cache(cache);
     Sums sums = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0));
     for (int index = push.first_group + int(self); index < end; index += 64) {
         LightGroup group = load_light_group(area_light_groups, index);
         if (faces_any(group, position_rs)) {
             float visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
+            if (KEEPS_SEEN != 0u && visibility > 0.0) {
+                atomicOr(seen[first_word + uint(index) / 32u], 1u << (uint(index) & 31u));
+            }
             for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
                 vec3 direction;
                 vec3 received = visibility * light_from(load_area_light(number), position_rs, direction);

@@ -190,6 +190,10 @@ fn reflections_are_those_of_paths_of_one_bounce() {
         let (scene, camera) = metal_wall(roughness);
         cases.push((format!("a wall of roughness {roughness}"), scene, camera, mean_bound, error_bound));
     }
+    // Along the wall: texels of half vectors are as wide there as elsewhere.
+    let (scene, _) = metal_wall(0.4);
+    let grazing = view(DVec3::new(-0.9, 0.1, -0.7), DVec3::new(0.6, 0.0, -1.0));
+    cases.push(("a wall of roughness 0.4, seen along it".to_owned(), scene, grazing, 0.05, 0.1));
     let mut wrong = Vec::new();
     for (name, scene, camera, mean_bound, error_bound) in cases {
         let settings = set(&[]);
@@ -249,6 +253,24 @@ fn both_slots_share_caches_and_change_nothing_of_each_other() {
     let specular = session.render(&scene, &set(&[]), &asked(&[Slot::Specular]));
     assert_eq!(bits(&both.slots[&Slot::Specular]), bits(&specular.slots[&Slot::Specular]));
     assert!(passes_run(&specular, "diffuse").is_empty(), "{:?}", passes_run(&specular, "diffuse"));
+}
+
+/// More maps than there is room for at first.
+#[test]
+fn room_for_maps_grows() {
+    let session = Session::open();
+    let (scene, camera) = lit_patch();
+    let asked = request(SIZE, camera, &[Slot::Specular]);
+    let asked = FrameRequest { image: false, timing: Timing::Passes, ..asked };
+    let mut renderer = session.renderer(&set(&[("volumes.lights", "16")]));
+    let first = renderer.render(&scene, &asked).expect("a frame");
+    let maps = row(&first, "specular/radiance-maps/choose").work["maps"];
+    assert!(maps > 1024, "{maps} maps");
+    renderer.invalidate();
+    let again = renderer.render(&scene, &asked).expect("a frame");
+    assert_eq!(bits(&first.slots[&Slot::Specular]), bits(&again.slots[&Slot::Specular]));
+    let lit = first.slots[&Slot::Specular].pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+    assert!(lit > 500, "{lit} pixels of the floor");
 }
 
 fn row(frame: &crate::renderer::Frame, name: &str) -> PassTiming {

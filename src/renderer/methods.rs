@@ -296,6 +296,8 @@ mod tests {
         let caustics = |slot| of(Technique::Particles).light_paths(slot).caustics;
         assert_eq!([Slot::Direct, Slot::Specular].map(caustics), [CausticPaths::Unmirrored; 2]);
         assert_eq!([Slot::Emission, Slot::Diffuse, Slot::Caustics].map(caustics), [CausticPaths::All; 3]);
+        let maps = of(Technique::Volumes).light_paths(Slot::Specular);
+        assert_eq!((maps.bounces, maps.caustics, maps.mirrors), (Some(1), CausticPaths::None, None), "L D S E");
         let specular = |changes: &[(&str, &str)]| {
             let mut settings = of(Technique::Particles);
             changes.iter().for_each(|(key, value)| settings.set(key, value).expect("a setting"));

@@ -1,8 +1,8 @@
 //! The light of all virtual area lights at all caches.
 
 use super::options::{VolumesOptions, VolumesVisibility};
-use crate::frame::caches::{AreaLights, Caches};
-use crate::graph::bindings::BufferRef;
+use crate::frame::caches::{AreaLights, Caches, SeenLights, SeenWanted};
+use crate::graph::bindings::{BufferRef, ReadWriteBuffer};
 use crate::method::FrameCx;
 use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 
@@ -42,6 +42,10 @@ pub(super) fn light(
     let voxels = (options.visibility == VolumesVisibility::Cones).then(|| cx.voxels(&options.voxel_settings()));
     let graph = &mut *cx.graph;
     let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);
+    // What rays found is kept where somebody else asks for it.
+    let shares = options.visibility == VolumesVisibility::Rays && cx.frame.offers.get::<SeenWanted>().is_some();
+    let seen_words = lights.group_count.div_ceil(32);
+    let seen = shares.then(|| graph.buffer::<u32>("volumes.seen", (seen_words * caches.capacity) as usize));
     let most = groups_at_once(lights, options, graph.traits().loop_steps);
     for first in (0..lights.group_count.max(1)).step_by(most as usize) {
         let into = if first == 0 { light.start_then_read() } else { light.read_write() };
@@ -54,13 +58,15 @@ pub(super) fn light(
         let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
         let (area_lights, light_caches) = (lights.group.clone(), caches.group.clone());
         if let Some(voxels) = &voxels {
-            let push = LightConesPush { rays, first_group, end_group, capacity };
+            let push = LightConesPush { rays, first_group, end_group, capacity, seen_words };
             let pass = LightCones {
                 voxels: voxels.group.clone(),
                 area_lights,
                 light_caches,
                 light: into,
+                seen: ReadWriteBuffer::absent(),
                 bands: options.bands,
+                keeps_seen: 0,
                 push,
             };
             graph.pass(&name, pass).threads_indirect(caches.head, 0);
@@ -70,12 +76,20 @@ pub(super) fn light(
                 area_lights,
                 light_caches,
                 light: into,
+                seen: seen.map_or(ReadWriteBuffer::absent(), |seen| match first {
+                    0 => seen.start_then_read(),
+                    _ => seen.read_write(),
+                }),
                 bands: options.bands,
+                keeps_seen: u32::from(shares),
                 traces: u32::from(options.visibility == VolumesVisibility::Rays),
-                push: LightPush { rays, first_group, end_group, capacity },
+                push: LightPush { rays, first_group, end_group, capacity, seen_words },
             };
             graph.pass(&name, pass).threads_indirect(caches.head, 0);
         }
+    }
+    if let Some(bits) = seen {
+        cx.frame.offers.put(SeenLights { bits, words: seen_words });
     }
     light
 }

@@ -126,6 +126,7 @@ const CHANGES: &[(&str, Change)] = &[
     ("the estimator", |parts| parts.request.estimator = Estimator::Sppm),
     ("no bounces", |parts| parts.request.bounces = Some(0)),
     ("caustics of specular paths alone", |parts| parts.request.caustics = CausticPaths::Specular),
+    ("nothing specular on the way", |parts| parts.request.caustics = CausticPaths::None),
     ("no caustics in mirrors", |parts| parts.request.caustics = CausticPaths::Unmirrored),
     ("no reflection", |parts| parts.request.mirrors = Some(0)),
     ("one reflection", |parts| parts.request.mirrors = Some(1)),
