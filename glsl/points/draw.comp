@@ -17,6 +17,7 @@ layout(set = 0, binding = 4, r32ui) uniform uimage2D blue;
 layout(set = 0, binding = 5) buffer ReachBlock { uint tile_reaches[]; };
 layout(set = 0, binding = 6) writeonly buffer ListBlock { uint tile_list[]; };
 layout(set = 0, binding = 7) buffer HeadBlock { uint tile_head[]; };
+layout(set = 0, binding = 8) buffer LitBlock { uint tile_lit[]; };
 
 layout(push_constant, scalar) uniform Push {
     ivec2 size;
@@ -59,6 +60,8 @@ void main() {
     imageAtomicAdd(red, pixel, terms.x);
     imageAtomicAdd(green, pixel, terms.y);
     imageAtomicAdd(blue, pixel, terms.z);
+    int bit = bit_in_tile(pixel);
+    atomicOr(tile_lit[2 * tile_of_pixel(pixel, push.size) + (bit >> 5)], 1u << (bit & 31));
     float radius = bounded_radius(push.radius > 0.0 ? push.radius : push.radius_scale * photon.larger, place.extent);
     // What rounding may add to the mean of several.
     list_tiles(pixel, reach_of(1.01 * radius, place.extent));

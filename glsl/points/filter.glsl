@@ -10,8 +10,13 @@
 #include "points/place.glsl"
 #include "points/width.glsl"
 
-// `inverse`: C⁻¹ at the source.
-float weight_of(Place source, vec3 inverse, Place receiver, ivec2 step) {
+// The axes of an ellipse in the plane of the surface, over its radii.
+struct Spreading {
+    vec3 first;
+    vec3 second;
+};
+
+float weight_of(Place source, Spreading spreading, Place receiver, ivec2 step) {
     if (!receiver.valid || !is_same_surface(source, receiver.position_rs, receiver.normal)) {
         return 0.0;
     }
@@ -19,10 +24,9 @@ float weight_of(Place source, vec3 inverse, Place receiver, ivec2 step) {
         const float k = float(SCREEN_REACH);
         return sqrt(1.0 + 2.0 * k * k - float(step.x * step.x + step.y * step.y));
     }
-    Axes axes = axes_of(source.normal);
     vec3 way = receiver.position_rs - source.position_rs;
-    vec2 along = vec2(dot(way, axes.x), dot(way, axes.y));
-    float q = inverse.x * along.x * along.x + inverse.y * along.y * along.y + 2.0 * inverse.z * along.x * along.y;
+    vec2 along = vec2(dot(way, spreading.first), dot(way, spreading.second));
+    float q = dot(along, along);
     // The pixel itself has its share, however narrow the ellipse and however slanted the surface.
     q = step == ivec2(0) ? min(q, 0.999) : q;
     return q < 1.0 ? exp(-4.0 * q) : 0.0;

@@ -43,9 +43,18 @@ float largest_radius(vec3 width) {
     return sqrt(middle + sqrt(off * off + width.z * width.z));
 }
 
-vec3 inverse_width(vec3 width) {
-    float determinant = max(width.x * width.y - width.z * width.z, 1e-37);
-    return vec3(width.y, width.x, -width.z) / determinant;
+// The directions of the larger and of the smaller radius, each over its radius.
+void axes_over_radii(vec3 width, vec3 normal, out vec3 first, out vec3 second) {
+    Axes axes = axes_of(normal);
+    float off = 0.5 * (width.x - width.y);
+    float apart = sqrt(off * off + width.z * width.z);
+    float middle = 0.5 * (width.x + width.y);
+    // The direction of the larger radius has half the angle of (off, xy).
+    vec2 doubled = apart > 1e-20 * middle ? vec2(off, width.z) / apart : vec2(1.0, 0.0);
+    float cosine = sqrt(max(0.5 + 0.5 * doubled.x, 0.0));
+    float sine = (doubled.y < 0.0 ? -1.0 : 1.0) * sqrt(max(0.5 - 0.5 * doubled.x, 0.0));
+    first = (cosine * axes.x + sine * axes.y) * inversesqrt(middle + apart);
+    second = (cosine * axes.y - sine * axes.x) * inversesqrt(max(middle - apart, 1e-6 * middle));
 }
 
 #endif

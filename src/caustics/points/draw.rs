@@ -23,6 +23,8 @@ const TILE_SIDE: u32 = 8;
 const LISTED_A_ROW: u32 = 32_768;
 const HEAD_WORDS: usize = 4;
 const HEAD_COUNT: usize = 3;
+/// As in glsl/points/source.glsl.
+const SOURCE_TEXELS: usize = 4;
 
 /// The radii of a photon's light over those of the ellipse that it stands for.
 const RADIUS_SCALE: f32 = 1.4;
@@ -41,6 +43,8 @@ struct Tiles {
     reaches: BufferRef<u32>,
     list: BufferRef<u32>,
     head: BufferRef<u32>,
+    /// The pixels of each on which photons fall, a bit each.
+    lit: BufferRef<u32>,
     /// In one row and the next.
     all: [u32; 3],
 }
@@ -54,10 +58,13 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
     let (sums, tiles) = points(graph, buffer, (world, radius, count_log2), photons);
 
     let slot = graph.image("caustics", FLOATS, buffer.size);
-    let spread = graph.image("points.spread", FLOATS, buffer.size);
-    let shapes = graph.image("points.shapes", RECORDS, buffer.size);
+    let slots = graph.image("points.slots", WORDS, buffer.size);
+    // A pixel has a photon at least.
+    let sources = graph.buffer::<[u32; 4]>("points.sources", SOURCE_TEXELS * photons.count.max(1) as usize);
+    let source_count = graph.buffer::<u32>("points.source_count", 1);
     graph.clear_image(&name("filter/clear"), slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
-    graph.clear_image(&name("filter/clear-spread"), spread, ClearColor::Float([0.0; 4]));
+    graph.clear_image(&name("filter/clear-slots"), slots, ClearColor::Uint([0; 4]));
+    graph.fill_buffer(&name("filter/clear-count"), source_count, 0);
     let all_tiles = options.tiles == PointTiles::All;
     let listed = |buffer: BufferRef<u32>| if all_tiles { TexelBuffer::absent() } else { buffer.texels(WORDS) };
     let [red, green, blue] = sums.flux.map(ImageRef::sampled);
@@ -78,11 +85,12 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
         width_xy,
         shift_x,
         shift_y,
-        spread: spread.modify(),
-        shapes: shapes.start(),
+        slots: slots.modify(),
+        sources: sources.start(),
+        source_count: source_count.read_write(),
         push: SpreadPush { size, count_log2 },
     };
-    let pass = graph.pass(&name("filter/spread"), pass);
+    let pass = graph.pass(&name("filter/spread"), pass).unordered().count("pixels", source_count, 0);
     match all_tiles {
         true => pass.groups(tiles.all),
         false => pass.threads_indirect(tiles.head, 0),
@@ -94,8 +102,9 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
         tile_head: listed(tiles.head),
         tile_list: listed(tiles.list),
         tile_reaches: tiles.reaches.texels(WORDS),
-        spread: spread.sampled(),
-        shapes: shapes.sampled(),
+        tile_lit: if all_tiles { TexelBuffer::absent() } else { tiles.lit.texels(WORDS) },
+        slots: slots.sampled(),
+        sources: sources.texels(RECORDS),
         caustics: slot.modify(),
         push: FilterPush { size },
     };
@@ -141,10 +150,12 @@ fn points(
         reaches: graph.buffer("points.tile_reaches", count as usize),
         list: graph.buffer("points.tile_list", count as usize),
         head: graph.buffer("points.tile_head", HEAD_WORDS),
+        lit: graph.buffer("points.tile_lit", 2 * count as usize),
         all: [count.min(LISTED_A_ROW), count.div_ceil(LISTED_A_ROW), 1],
     };
     graph.fill_buffer(&name("draw/clear-tiles"), tiles.reaches, 0);
     graph.fill_buffer(&name("draw/clear-head"), tiles.head, 0);
+    graph.fill_buffer(&name("draw/clear-lit"), tiles.lit, 0);
     let pass = Draw {
         surface: buffer.group.clone(),
         world: u32::from(world),
@@ -156,6 +167,7 @@ fn points(
         tile_reaches: tiles.reaches.read_write(),
         tile_list: tiles.list.start(),
         tile_head: tiles.head.read_write(),
+        tile_lit: tiles.lit.read_write(),
         push: DrawPush { size, count: photons.count, count_log2, radius, radius_scale: RADIUS_SCALE },
     };
     let pass = graph.pass(&name("draw/points"), pass).unordered();
