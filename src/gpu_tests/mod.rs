@@ -66,6 +66,7 @@ mod tonemap;
 mod trace;
 mod traced_direct;
 mod traits;
+mod volumes_bounces;
 mod volumes_caches;
 mod volumes_lights;
 mod vpl_paths;

@@ -10,7 +10,7 @@ use crate::method::FrameCx;
 use crate::shaders::volumes::{Apply, ApplyPush};
 
 /// The kinds of glsl/volumes/weights.glsl.
-fn kind_of(weights: VolumesWeights) -> u32 {
+pub(super) fn kind_of(weights: VolumesWeights) -> u32 {
     match weights {
         VolumesWeights::Trilinear => 0,
         VolumesWeights::Rays => 1,

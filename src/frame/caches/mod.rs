@@ -4,7 +4,9 @@
 mod allocate;
 mod cascades;
 mod lights;
+mod spread;
 
 pub(crate) use self::allocate::{Caches, allocate};
 pub(crate) use self::cascades::CascadeRule;
-pub(crate) use self::lights::{AreaLights, LightRule, area_lights};
+pub(crate) use self::lights::{AreaLights, LightRule, area_lights, grouped};
+pub(crate) use self::spread::{Picture, spread_lights};

@@ -7,6 +7,7 @@ mod emitters;
 mod hierarchy;
 mod looks;
 mod motion;
+mod samples;
 mod sobol;
 mod surfaces;
 mod targets;

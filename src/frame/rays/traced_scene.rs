@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::emitters::{EmitterTable, emitter_table};
 use super::looks::Looks;
+use super::samples::SurfaceSamples;
 use super::surfaces::{Surfaces, surfaces_key};
 use super::targets::{Reach, TargetShares, targets};
 use super::tessellation::Tessellation;
@@ -206,6 +207,11 @@ impl TracedScene {
     /// Points of all diffuse surface, closer to each other than `spacing` metres.
     pub(crate) fn tessellation(&self, spacing: f64) -> Arc<Tessellation> {
         self.surfaces.tessellation(spacing, &self.looks.diffuse_sides)
+    }
+
+    /// So many points spread evenly over all diffuse surface, in clusters of so many neighbours.
+    pub(crate) fn surface_samples(&self, count: u32, cluster: u32) -> Arc<SurfaceSamples> {
+        self.surfaces.samples((count, cluster), &self.looks.diffuse_sides)
     }
 
     /// The area of all sides with a diffuse lobe, m².
