@@ -22,6 +22,8 @@ layout(push_constant, scalar) uniform Push {
 shared uvec2 asked[64];
 shared uint in_both_count;
 
+#include "caches/append_ask.glsl"
+
 // All invocations of the group must come here.
 bool speaks(uvec2 key) {
     uint self = gl_LocalInvocationIndex;
@@ -33,17 +35,6 @@ bool speaks(uvec2 key) {
     bool left_above = all(inside) && asked[self - 9u] == key;
     barrier();
     return key.x != NO_ADDRESS && !left && !above && !left_above;
-}
-
-void append(Ask ask) {
-    uint index = atomicAdd(head[3], 1u);
-    uint group = index / GROUP_ASKS;
-    atomicMax(head[0], min(group + 1u, ROW_GROUPS));
-    atomicMax(head[1], group / ROW_GROUPS + 1u);
-    atomicMax(head[2], 1u);
-    if (index < push.capacity) {
-        asks[index] = ask;
-    }
 }
 
 void main() {

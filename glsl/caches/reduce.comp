@@ -1,6 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "groups/light_views.glsl"
+#include "caches/across_plane.glsl"
 #include "caches/slots.glsl"
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
@@ -8,8 +9,9 @@
 #include "lib/vpl.glsl"
 
 // One invocation makes one virtual area light of a block of light-view texels (Reich 2015, section 4.3.1): flux Φ is summed over all of them, so that none is lost; position
-// and normal are means by flux. The mean position is moved along the normal of the lit texel nearest to it onto that texel's plane: on a flat surface it stays where it
-// is, and it neither floats before an edge nor sinks behind one.
+// and normal are means by flux. The mean position is moved along the normal of the lit texel nearest to it onto that texel's plane, or onto the texel itself if it would end up
+// farther away than that is large: on a flat surface it stays where it is, and where a block holds surfaces on both sides of an edge, it neither floats before the edge nor sinks
+// behind it.
 //
 // Its area is what its lit texels see of their surfaces, m² (disc: the irradiance is Φ/π · cos cos / (d² + A/π), lib/vpl.glsl), or the same as the light sees it,
 // A cosθ, which is A_near z²/(z_near² M) (4.5); the paper adds all of it to d² (4.4). Either way the second number that is stored is what is added to d².
@@ -27,6 +29,9 @@ layout(push_constant, scalar) uniform Push {
     uint view_count;
     int side;
 } push;
+
+// A texel that its surface lies askew to is longer than the root of its area.
+const float TEXELS_AWAY = 2.0;
 
 uint place_of_slot(uint slot) {
     uint low = 0u;
@@ -109,7 +114,10 @@ void main() {
         }
     }
     vec3 normal = unpack_direction(texelFetch(light_normal, nearest, 0).x);
-    vec3 position_rs = mean + dot(normal, position_at(view, nearest) - mean) * normal;
+    vec3 at = position_at(view, nearest);
+    vec2 tangent = tangent_of_texel(view, vec2(nearest) + 0.5);
+    float size = area_of_texel(view, tangent, max(texelFetch(light_depth, nearest, 0).x, 1e-30), normal);
+    vec3 position_rs = at + across_plane(normal, mean - at, TEXELS_AWAY * sqrt(size));
     bool lit = weights > 0.0 && is_finite(position_rs) && is_finite(area);
     slots[2u * slot] = lit ? pack_vpl_position(position_rs, area) : vec4(0.0);
     slots[2u * slot + 1u] = lit ? pack_vpl_strength(flux * view.flux_scale, normalize_or(normals, normal)) : vec4(0.0);

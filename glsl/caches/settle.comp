@@ -25,11 +25,11 @@ void main() {
         return;
     }
     uint address = texelFetch(nodes, int(index)).x;
+    float cell = cell_of_cascade(push.cascades, cascade_of_address(push.cascades, address));
     if (push.moves_on == 0u) {
-        positions[index] = vec4(position_of_address(push.cascades, address), 0.0);
+        positions[index] = vec4(position_of_address(push.cascades, address), cell);
         return;
     }
-    float cell = cell_of_cascade(push.cascades, cascade_of_address(push.cascades, address));
     vec3 steps;
     for (uint axis = 0u; axis < 3u; ++axis) {
         uint place = 6u * index + 2u * axis;

@@ -5,9 +5,6 @@
 #define CACHES_WEIGHTS
 
 #include "lib/cutouts.glsl"
-#include "lib/brdf.glsl"
-#include "lib/pixel_rays.glsl"
-#include "caches/rays.glsl"
 #include "lib/bvh.glsl"
 
 const uint WEIGHTS_TRILINEAR = 0u;
@@ -17,13 +14,10 @@ layout(constant_id = 2) const uint WEIGHTS = WEIGHTS_TRILINEAR;
 
 const float LEAST_WEIGHT = 1e-4;
 
-// `share`: its trilinear weight. Caches of next to none are not worth a ray.
-float weight_of_cache(CacheRays rays, Surface point, vec3 cache_rs, float share) {
+// Both in the space of rays. `share`: the trilinear weight. Caches of next to none are not worth a ray.
+float weight_of_cache(vec3 origin, vec3 cache, float share) {
     if (WEIGHTS == WEIGHTS_RAYS && share > LEAST_WEIGHT) {
-        vec3 normal = point.geometric_normal;
-        normal = dot(normal, direction_to_eye(camera, point.position_rs)) < 0.0 ? -normal : normal;
-        vec3 origin = pixel_ray_origin(point.position_rs, rays.shift, normal);
-        return is_occluded(origin, cache_rs + rays.shift - origin, 1.0) ? LEAST_WEIGHT : 1.0;
+        return is_occluded(origin, cache - origin, 1.0) ? LEAST_WEIGHT : 1.0;
     }
     return 1.0;
 }

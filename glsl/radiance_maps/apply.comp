@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/light_caches.glsl"
 #include "caches/asking.glsl"
+#include "caches/pixel_origin.glsl"
 #include "caches/weights.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
@@ -111,6 +112,7 @@ vec4 look_up(Look look, Surface point, uint cache, int first) {
 }
 
 vec3 incoming_light(Look look, Surface point) {
+    vec3 origin = WEIGHTS == WEIGHTS_RAYS ? origin_of_pixel(point, push.rays) : vec3(0.0);
     float next;
     int cascade = cascade_of(cascades, point.position_rs, next);
     vec4 light = vec4(0.0);
@@ -127,7 +129,7 @@ vec3 incoming_light(Look look, Surface point) {
                 uint map = cache < push.cache_capacity ? map_slots[cache] - 1u : NO_ADDRESS;
                 float weight = shares.x * shares.y * shares.z;
                 if (map < push.map_capacity && weight > 0.0) {
-                    weight *= weight_of_cache(push.rays, point, position_of_cache(cache), weight);
+                    weight *= weight_of_cache(origin, position_of_cache(cache) + push.rays.shift, weight);
                     sum += weight * look_up(look, point, cache, int(map) * MAP_TEXELS);
                     weights += weight;
                 }

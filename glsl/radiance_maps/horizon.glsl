@@ -8,14 +8,14 @@
 #include "lib/octahedral.glsl"
 
 const float HORIZON_REACH = 8.0;
-const float HORIZON_STEPS = 16777216.0;
+const float MAP_HORIZON_STEPS = 16777216.0;
 const uint HORIZON_BITS = 28u;
 // Light must come from so far before the plane, in cells.
 const float HORIZON_MARGIN = 0.01;
 
 uint horizon_word(int cascade, float cells_before) {
     float below = clamp(HORIZON_REACH - cells_before, 0.0, 2.0 * HORIZON_REACH - 1e-3);
-    return uint(cascade) << HORIZON_BITS | uint(below * HORIZON_STEPS);
+    return uint(cascade) << HORIZON_BITS | uint(below * MAP_HORIZON_STEPS);
 }
 
 bool has_horizon(uvec3 words) {
@@ -23,21 +23,21 @@ bool has_horizon(uvec3 words) {
 }
 
 // A plane from the cache: what is before it has dot(normal, way) > height. Without one all is.
-struct Horizon {
+struct MapHorizon {
     vec3 normal;
     float height;
 };
 
-Horizon horizon_of(Cascades cascades, uvec3 words) {
+MapHorizon horizon_of(Cascades cascades, uvec3 words) {
     if (!has_horizon(words)) {
-        return Horizon(vec3(0.0), -1.0);
+        return MapHorizon(vec3(0.0), -1.0);
     }
     float cell = cell_of_cascade(cascades, int(words.z >> HORIZON_BITS));
-    float before = HORIZON_REACH - float(words.z & (1u << HORIZON_BITS) - 1u) / HORIZON_STEPS;
-    return Horizon(unpack_direction(words.y), (before + HORIZON_MARGIN) * cell);
+    float before = HORIZON_REACH - float(words.z & (1u << HORIZON_BITS) - 1u) / MAP_HORIZON_STEPS;
+    return MapHorizon(unpack_direction(words.y), (before + HORIZON_MARGIN) * cell);
 }
 
-bool is_before(Horizon horizon, vec3 way) {
+bool is_before(MapHorizon horizon, vec3 way) {
     return dot(horizon.normal, way) > horizon.height;
 }
 

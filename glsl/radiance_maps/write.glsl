@@ -28,8 +28,6 @@ const uint FILL_FOOTPRINT = 2u;
 const int MOST_PARTS = 4;
 
 layout(constant_id = 4) const uint CACHED = 0u;
-// 1: what rays from the caches to the groups of lights find is known.
-layout(constant_id = 8) const uint KNOWS_SEEN = 0u;
 layout(constant_id = 5) const uint FILL = FILL_FOOTPRINT;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer map_head;
@@ -39,14 +37,11 @@ layout(set = 0, binding = 3) coherent buffer SumBlock { uint sums[]; };
 
 layout(set = 0, binding = 4) readonly buffer HorizonBlock { uint horizons[]; };
 
-layout(set = 0, binding = 5) readonly buffer SeenBlock { uint seen[]; };
-
 layout(push_constant, scalar) uniform Push {
     CacheRays rays;
     int first_group;
     int end_group;
     uint capacity;
-    uint seen_words;  // of a cache
 } push;
 
 const int HELD = CACHED != 0u ? 3 * MAP_TEXELS : 1;
@@ -89,7 +84,7 @@ void add_part(uint first, Frame frame, vec3 strength, vec3 way, vec3 normal, flo
 }
 
 // A square of the light's area, in parts that are no wider than a texel.
-void add_parts(uint first, Frame frame, Horizon horizon, Vpl light, vec3 position_rs, float factor) {
+void add_parts(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 position_rs, float factor) {
     vec3 normal = normalize(light.normal);
     vec3 way = light.position_rs - position_rs;
     float side = sqrt(PI * light.area_over_pi);
@@ -108,7 +103,7 @@ void add_parts(uint first, Frame frame, Horizon horizon, Vpl light, vec3 positio
     }
 }
 
-void add_light(uint first, Frame frame, Horizon horizon, Vpl light, vec3 position_rs, float factor) {
+void add_light(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 position_rs, float factor) {
     vec3 direction;
     vec3 amount = factor * light_from(light, position_rs, direction);
     if (max3(amount) <= 0.0) {
@@ -124,7 +119,7 @@ void add_light(uint first, Frame frame, Horizon horizon, Vpl light, vec3 positio
 }
 
 // Whether a light of the group faces the cache and has a part before its horizon.
-bool shines_any(LightGroup group, Horizon horizon, vec3 position_rs) {
+bool shines_any(LightGroup group, MapHorizon horizon, vec3 position_rs) {
     bool shines = false;
     for (int index = group.first; index < group.end && !shines; ++index) {
         Vpl light = load_area_light(index);
@@ -154,19 +149,14 @@ void write_map() {
     barrier();
     uint cache = texelFetch(map_caches, int(map)).x;
     vec3 position_rs = position_of_cache(cache);
-    Horizon horizon = horizon_of(cascades, uvec3(horizons[3u * cache], horizons[3u * cache + 1u], horizons[3u * cache + 2u]));
+    MapHorizon horizon = horizon_of(cascades, uvec3(horizons[3u * cache], horizons[3u * cache + 1u], horizons[3u * cache + 2u]));
     Frame frame = frame_around(direction_to_eye(camera, position_rs));
     float scale = scale_of_bound(texelFetch(map_bounds, int(map)).x);
     int end = min(push.end_group, int(texelFetch(area_light_counts, 1).x));
     for (int index = push.first_group + int(self); index < end; index += 64) {
         LightGroup group = load_light_group(area_light_groups, index);
         if (shines_any(group, horizon, position_rs)) {
-            float visibility;
-            if (KNOWS_SEEN != 0u) {
-                visibility = float(seen[cache * push.seen_words + uint(index) / 32u] >> (uint(index) & 31u) & 1u);
-            } else {
-                visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
-            }
+            float visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
             for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
                 add_light(first, frame, horizon, load_area_light(number), position_rs, scale * visibility);
             }

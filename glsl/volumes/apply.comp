@@ -1,22 +1,14 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "groups/light_caches.glsl"
 #include "caches/asking.glsl"
 #include "lib/pixels.glsl"
-#include "lib/spherical_harmonics.glsl"
 #include "lib/surface_packing.glsl"
-#include "caches/weights.glsl"
+#include "caches/pixel_origin.glsl"
 
-// The slot `diffuse` of one pixel: radiance in W/(m²·sr), L(x) = ρ/π · E(x), with ρ = indirect_diffuse_albedo() and the irradiance E at the shading normal n of the eight
-// caches around x, weighed trilinearly (Reich 2015, section 4.4) and, if asked for, by whether x sees them (caches/weights.glsl),
-//
-//   E(x) = Σ_lm A_l y_lm(n) · Σ_k w_k c_lm,k / Σ_k w_k
-//
-// In zones of transition two cascades share, linearly. Caches that are not there are counted, and leave their weight to the others.
+// The slot `diffuse` of one pixel: radiance in W/(m²·sr), L(x) = ρ/π · E(x), with ρ = indirect_diffuse_albedo() and the irradiance E of the caches around x
+// (volumes/irradiance.glsl).
 
 layout(local_size_x = 64) in;
-
-layout(constant_id = 0) const uint BANDS = 3u;
 
 layout(set = 0, binding = 0) uniform samplerBuffer light;  // volumes/light.comp
 layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D diffuse;
@@ -27,57 +19,7 @@ layout(push_constant, scalar) uniform Push {
     uint capacity;
 } push;
 
-const int TEXELS = BANDS == 3u ? 7 : 3;
-
-// Σ A_l c_lm y_lm(n) of the cache's three channels, by the weights.
-vec3 irradiance_from(int cache, vec4 low, vec4 high, float last) {
-    int first = TEXELS * cache;
-    vec3 sum;
-    if (BANDS == 3u) {
-        for (int channel = 0; channel < 3; ++channel) {
-            sum[channel] = dot(texelFetch(light, first + 2 * channel), low) + dot(texelFetch(light, first + 2 * channel + 1), high);
-        }
-        sum += last * texelFetch(light, first + 6).rgb;
-    } else {
-        for (int channel = 0; channel < 3; ++channel) {
-            sum[channel] = dot(texelFetch(light, first + channel), low);
-        }
-    }
-    return sum;
-}
-
-vec3 irradiance_at(Surface point) {
-    vec4 low = cosine_of_low_bands(point.normal);
-    vec4 high = cosine_of_band_2(point.normal);
-    float last = last_cosine(point.normal);
-    float next;
-    int cascade = cascade_of(cascades, point.position_rs, next);
-    vec3 irradiance = vec3(0.0);
-    [[dont_unroll]] for (int step = 0; step < 2; ++step) {
-        float share = step == 0 ? 1.0 - next : next;
-        if (share > 0.0) {
-            Place place = place_in(cascades, cascade + step, point.position_rs);
-            vec3 sum = vec3(0.0);
-            float weights = 0.0;
-            [[dont_unroll]] for (int corner = 0; corner < 8; ++corner) {
-                ivec3 offset = corner_of(corner);
-                vec3 shares = mix(1.0 - place.along, place.along, vec3(offset));
-                uint address = address_of(cascades, place.cascade, place.lowest + offset);
-                uint cache = texelFetch(cache_addresses, int(address)).x - 1u;
-                if (cache < push.capacity) {
-                    float weight = shares.x * shares.y * shares.z;
-                    weight *= weight_of_cache(push.rays, point, position_of_cache(cache), weight);
-                    sum += weight * irradiance_from(int(cache), low, high, last);
-                    weights += weight;
-                } else {
-                    atomicAdd(missing[0], 1u);
-                }
-            }
-            irradiance += share / max(weights, 1e-6) * sum;
-        }
-    }
-    return max(irradiance, vec3(0.0));
-}
+#include "volumes/irradiance.glsl"
 
 void main() {
     ivec2 pixel = pixel_of_invocation();
@@ -93,7 +35,12 @@ void main() {
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 response = indirect_diffuse_albedo(point) * INVERSE_PI;
         if (max3(response) > 0.0) {
-            radiance = response * irradiance_at(point);
+            vec3 origin = WEIGHTS == WEIGHTS_RAYS ? origin_of_pixel(point, push.rays) : vec3(0.0);
+            uint absent;
+            radiance = response * irradiance_at(position_rs, point.normal, push.rays, origin, push.capacity, absent);
+            if (absent > 0u) {
+                atomicAdd(missing[0], absent);
+            }
         }
     }
     imageStore(diffuse, pixel, vec4(radiance, 1.0));

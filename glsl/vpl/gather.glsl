@@ -2,12 +2,12 @@
 //
 //   E(x) = Σ_k Φ_k/π · F_k(x) · V_k(x)      [W/m²]
 //
-// F the form factor of vpl/disc.glsl, V the visibility of vpl/visibility.glsl, which is asked only where F is above 0. The including file
+// F the form factor of lib/disc.glsl, V the visibility of vpl/visibility.glsl, which is asked only where F is above 0. The including file
 // binds `uniform samplerBuffer vpls`.
 #ifndef VPL_GATHER
 #define VPL_GATHER
 
-#include "vpl/disc.glsl"
+#include "lib/disc.glsl"
 #include "vpl/visibility.glsl"
 
 struct Receiver {

@@ -7,7 +7,7 @@
 #include "lib/texels.glsl"
 #include "lib/traced_scene.glsl"
 #include "lib/vpl.glsl"
-#include "vpl/disc.glsl"
+#include "lib/disc.glsl"
 #include "vpl/paths.glsl"
 
 // One invocation makes a VPL where a path met a surface (Keller 1997). With Φ the flux of the VPL that it left, which n paths leave of N
@@ -15,7 +15,7 @@
 //
 //   Φ' = Φ · N/n · ρ       A' = 5/D, at most the scene's π r²       D = n/N · Σ_i F_i(y)/π
 //
-// in W and m², F_i of vpl/disc.glsl. ΣΦ' over a bounce is on average what the scene reflects of the bounce before.
+// in W and m², F_i of lib/disc.glsl. ΣΦ' over a bounce is on average what the scene reflects of the bounce before.
 //
 // A VPL i sends n/N paths on average, cosine-distributed: per path they meet cos θ_i/π · cos θ_y/d² of the surface at y [1/m²], for a disc, from
 // all over it, F_i/π. D is the sum over all VPLs that send light, taken over every k-th where they are many, and leaves out what hides them from y. So

@@ -5,7 +5,7 @@
 #include "lib/lights.glsl"
 #include "lib/vpl.glsl"
 #include "vpl/blocks.glsl"
-#include "vpl/disc.glsl"
+#include "lib/disc.glsl"
 
 // One invocation makes one of N virtual point lights (Quyen 2014, section 3.2.1).
 //
@@ -90,7 +90,7 @@ ivec2 reflecting_texel(ivec2 block, ivec2 wanted) {
 }
 
 // Whether a disc of this radius ends before the surface does: in eight directions the view sees, behind the disc's rim, something on the disc's
-// plane or in front of it. A wall that meets another one goes on in this sense (vpl/disc.glsl folds the disc there), a box's edge does not.
+// plane or in front of it. A wall that meets another one goes on in this sense (lib/disc.glsl folds the disc there), a box's edge does not.
 bool surface_goes_on(LightView view, vec3 position_rs, vec3 normal, float radius) {
     vec3 along = normalize(cross(normal, abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
     vec3 across = cross(normal, along);

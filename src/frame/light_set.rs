@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec3};
 
 use super::scene_data::SceneData;
-use super::view_layout::{Atlas, ViewShape, ViewSource};
+use super::view_layout::{Atlas, LaidOutView, ViewShape, ViewSource};
 use crate::graph::hash_of;
 use crate::scene::{LightKind, PlacedLight, Scene};
 use crate::shaders::types;
@@ -81,6 +81,14 @@ impl LightSet {
         let largest_side = device.limits().max_image_dimension2_d;
         let atlas = Atlas::new(builder.shapes, detail.filter_radius, largest_side);
         LightSet { key, lights: builder.lights, punctual_count, atlas }
+    }
+}
+
+impl LightSet {
+    /// The views of all lights, or of the punctual ones, which come first.
+    pub(crate) fn views_of(&self, punctual: bool) -> &[LaidOutView] {
+        let end = self.atlas.views.partition_point(|view| !punctual || view.record.light < self.punctual_count);
+        &self.atlas.views[..end]
     }
 }
 

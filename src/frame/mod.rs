@@ -3,6 +3,7 @@
 //! Everything here works in *render space* (suffix `_rs`): the world's axes in metres, minus an origin among
 //! its surfaces (`src/scene/extent.rs`), so that a scene far from the world's origin loses no precision in 32-bit floats.
 
+pub(crate) mod bounces;
 pub(crate) mod caches;
 pub(crate) mod camera;
 pub(crate) mod check;

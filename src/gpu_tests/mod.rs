@@ -69,6 +69,7 @@ mod tonemap;
 mod trace;
 mod traced_direct;
 mod traits;
+mod volumes_bounces;
 mod volumes_caches;
 mod volumes_lights;
 mod vpl_paths;

@@ -80,6 +80,7 @@ fn a_resource_that_is_gone_is_made_again() {
     let all = [
         ("textured", small(Technique::Rsm, &[])),
         ("textured", small(Technique::Volumes, &[("volumes.lights", "16"), ("volumes.weights", "rays")])),
+        ("textured", small(Technique::Volumes, &[("volumes.bounces", "3"), ("volumes.samples", "64")])),
         ("ring", small(Technique::Hybrid, &[("photons.downscale", "1")])),
         ("ring", small(Technique::Hybrid, &lists)),
         ("cornell-point", small(Technique::Path, &[("path.spp", "1")])),

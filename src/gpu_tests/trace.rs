@@ -227,6 +227,10 @@ fn mirrors_show_the_diffuse_light_that_methods_offer() {
     hybrid.vpl.visibility = crate::diffuse::vpl::options::VplVisibility::Traced;
     let vpl = slots(&session, &scene, &hybrid, &camera);
     assert_close("vpl", &pixels(&vpl, Slot::Specular), &specular, 0.05, 0.08);
+    let mut caches = traced(Technique::Volumes);
+    caches.volumes.bounces = 16;
+    let volumes = slots(&session, &scene, &caches, &camera);
+    assert_close("volumes", &pixels(&volumes, Slot::Specular), &specular, 0.04, 0.08);
     let mut gathered = traced(Technique::Direct);
     gathered.methods.diffuse = DiffuseMethod::FinalGather;
     (gathered.final_gather.rays, gathered.final_gather.photons) = (64, 50_000);
@@ -234,7 +238,7 @@ fn mirrors_show_the_diffuse_light_that_methods_offer() {
     assert_close("final-gather", &pixels(&frame, Slot::Specular), &specular, 0.02, 0.05);
     assert!(traced(Technique::Particles).reduced().is_empty() && hybrid.reduced().is_empty());
     let direct = traced(Technique::Direct);
-    assert!(direct.reduced()[0].contains("final-gather, particles, vpl"), "{:?}", direct.reduced());
+    assert!(direct.reduced()[0].contains("final-gather, particles, volumes, vpl"), "{:?}", direct.reduced());
     let alone = slots(&session, &scene, &direct, &camera);
     let share = mean(&pixels(&alone, Slot::Specular)) / mean(&specular);
     assert!(share.max_element() < 0.9, "direct light alone: {share}");

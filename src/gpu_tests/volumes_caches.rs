@@ -55,7 +55,7 @@ fn pixels_get_the_bands_of_the_clamped_cosine() {
         let settings = settings_of(Technique::Volumes, &changes);
         let asked = request([24, 18], camera.clone(), &[]);
         let frame = probe(&session, &scene, &settings, &asked, |graph, declared| {
-            let lights = &declared.volumes.as_ref().expect("volumes runs").lights;
+            let lights = declared.volumes.as_ref().expect("volumes runs").lights.as_deref().expect("light views");
             let reads = [graph.read_back_buffer(lights.lights), graph.read_back_buffer(lights.counts)];
             let mut all = diffuse_and_its(reads[0], graph, declared);
             all.push(reads[1]);
@@ -126,22 +126,27 @@ fn room_for_caches_grows() {
     assert!(caches > 8192 && missing == 0, "{caches} caches, {missing} missing");
 }
 
-fn image(session: &Session, scene: &Scene) -> crate::renderer::ColorImage {
+fn image(session: &Session, scene: &Scene, bounces: &str) -> crate::renderer::ColorImage {
     let asked = request([60, 45], scene.camera_view(None).expect("its camera"), &[Slot::Diffuse]);
-    session.render(scene, &settings_of(Technique::Volumes, &[]), &asked).slots[&Slot::Diffuse].clone()
+    session.render(scene, &settings_of(Technique::Volumes, &[("volumes.bounces", bounces)]), &asked).slots
+        [&Slot::Diffuse]
+        .clone()
 }
 
 /// The picture depends on no unit of length, as `invariance.rs` has it for other techniques.
 #[test]
 fn scenes_of_any_scale_give_the_same_light() {
     let session = Session::open();
-    for name in ["cornell-spot", "lights"] {
+    for (name, bounces) in [("cornell-spot", "1"), ("lights", "1"), ("cornell-spot", "3")] {
         let scene = builtin(name);
-        let original = image(&session, &scene);
+        let original = image(&session, &scene, bounces);
         for scale in [1e-3, 1e3] {
-            let copy = image(&session, &transformed(&scene, DAffine3::from_scale(DVec3::splat(scale)), scale));
+            let copy = image(&session, &transformed(&scene, DAffine3::from_scale(DVec3::splat(scale)), scale), bounces);
             let found = difference(&original, &copy);
-            println!("{name} scaled by {scale}: rmse {:.1e}, at most {:.1e}", found.rmse, found.most);
+            println!(
+                "{name}, {bounces} bounces, scaled by {scale}: rmse {:.1e}, at most {:.1e}",
+                found.rmse, found.most
+            );
             assert!(found.rmse < 2e-3, "{name} scaled by {scale}: {:.1e}", found.rmse);
         }
     }
@@ -152,12 +157,12 @@ fn scenes_of_any_scale_give_the_same_light() {
 fn lights_of_any_strength_give_the_same_picture() {
     let session = Session::open();
     let mut scene = builtin("cornell-point");
-    let original = image(&session, &scene);
+    let original = image(&session, &scene, "3");
     let light = scene.lights()[0].clone();
     for factor in [1e-6_f32, 1e4] {
         let intensity = light.intensity.map(|channel| factor * channel);
         scene.set_light(LightId(0), crate::scene::Light { intensity, ..light.clone() }).expect("a sound light");
-        let copy = image(&session, &scene);
+        let copy = image(&session, &scene, "3");
         for (before, after) in original.pixels.iter().flatten().zip(copy.pixels.iter().flatten()) {
             let expected = f64::from(*before) * f64::from(factor);
             assert!(

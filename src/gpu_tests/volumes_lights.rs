@@ -16,7 +16,7 @@ use crate::scene::{LightKind, Scene};
 fn reduced(session: &Session, scene: &Scene, request: &FrameRequest, changes: &[(&str, &str)]) -> Probe {
     let settings = settings_of(Technique::Volumes, changes);
     probe(session, scene, &settings, request, |graph, declared| {
-        let lights = &declared.volumes.as_ref().expect("volumes runs").lights;
+        let lights = declared.volumes.as_ref().expect("volumes runs").lights.as_deref().expect("light views");
         let reads = [graph.read_back_buffer(lights.lights), graph.read_back_buffer(lights.counts)];
         [light_flux(graph, declared)].into_iter().chain(reads).collect()
     })
@@ -35,7 +35,12 @@ fn lights_carry_all_reflected_flux() {
         let scene = builtin(name);
         let request = request([8, 8], scene.camera_view(None).expect("its camera"), &[]);
         for (side, lod) in [("16", "0"), ("64", "2"), ("512", "4")] {
-            let changes = [("volumes.lights", side), ("volumes.lod", lod), ("lights.resolution", "128")];
+            let changes = [
+                ("volumes.lights", side),
+                ("volumes.lod", lod),
+                ("lights.resolution", "128"),
+                ("volumes.area_lights", "views"),
+            ];
             let frame = reduced(&session, &scene, &request, &changes);
             let (lights, texels) = (lights(&frame), frame.flux_of_lights(0).into_iter().sum::<DVec3>());
             assert!(lights.iter().all(|light| light.flux.max_element() > 0.0), "{name}: a light without flux");

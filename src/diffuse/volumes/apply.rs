@@ -9,7 +9,7 @@ use crate::method::FrameCx;
 use crate::shaders::volumes::{Apply, ApplyPush};
 
 /// The kinds of glsl/caches/weights.glsl.
-fn kind_of(weights: VolumesWeights) -> u32 {
+pub(super) fn kind_of(weights: VolumesWeights) -> u32 {
     match weights {
         VolumesWeights::Trilinear => 0,
         VolumesWeights::Rays => 1,

@@ -1,8 +1,8 @@
 //! The light of all virtual area lights at all caches.
 
-use super::options::{VolumesOptions, VolumesVisibility};
-use crate::frame::caches::{AreaLights, Caches, SeenLights, SeenWanted};
-use crate::graph::bindings::{BufferRef, ReadWriteBuffer};
+use super::options::{VolumesOptions, VolumesVal, VolumesVisibility};
+use crate::frame::caches::{AreaLights, Caches};
+use crate::graph::bindings::BufferRef;
 use crate::method::FrameCx;
 use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 
@@ -31,10 +31,32 @@ fn groups_at_once(lights: &AreaLights, options: &VolumesOptions, loop_steps: u32
     LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
 }
 
-/// Declares the passes; returns the numbers of all caches.
+/// Some groups of lights, which one pass takes.
+struct Step<'l> {
+    number: u32,
+    name: String,
+    lights: &'l AreaLights,
+    first_group: i32,
+    end_group: i32,
+}
+
+fn steps_of<'l>(lights: &[(&str, &'l AreaLights)], loop_steps: u32, options: &VolumesOptions) -> Vec<Step<'l>> {
+    let chunks = |&(name, lights): &(&str, &'l AreaLights)| {
+        let most = groups_at_once(lights, options, loop_steps);
+        let name = name.to_owned();
+        (0..lights.group_count.max(1)).step_by(most as usize).map(move |first| {
+            let name = if first == 0 { name.clone() } else { format!("{name}-{}", first / most + 1) };
+            let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
+            Step { name, lights, first_group: first.cast_signed(), end_group, number: 0 }
+        })
+    };
+    (0..).zip(lights.iter().flat_map(chunks)).map(|(number, step)| Step { number, ..step }).collect()
+}
+
+/// Declares the passes; returns the numbers of all caches. `views`: lights of light views, `samples`: of samples of the surfaces.
 pub(super) fn light(
     cx: &mut FrameCx<'_, '_>,
-    lights: &AreaLights,
+    (views, samples): (Option<&AreaLights>, Option<&AreaLights>),
     caches: &Caches,
     options: &VolumesOptions,
 ) -> BufferRef<f32> {
@@ -42,54 +64,41 @@ pub(super) fn light(
     let voxels = (options.visibility == VolumesVisibility::Cones).then(|| cx.voxels(&options.voxel_settings()));
     let graph = &mut *cx.graph;
     let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);
-    // What rays found is kept where somebody else asks for it.
-    let shares = options.visibility == VolumesVisibility::Rays && cx.frame.offers.get::<SeenWanted>().is_some();
-    let seen_words = lights.group_count.div_ceil(32);
-    let seen = shares.then(|| graph.buffer::<u32>("volumes.seen", (seen_words * caches.capacity) as usize));
-    let most = groups_at_once(lights, options, graph.traits().loop_steps);
-    for first in (0..lights.group_count.max(1)).step_by(most as usize) {
-        let into = if first == 0 { light.start_then_read() } else { light.read_write() };
-        let name = if first == 0 {
-            "diffuse/volumes/light".to_owned()
-        } else {
-            format!("diffuse/volumes/light-{}", first / most + 1)
-        };
-        let (first_group, capacity) = (first.cast_signed(), caches.capacity);
-        let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
-        let (area_lights, light_caches) = (lights.group.clone(), caches.group.clone());
+    let lists = [("diffuse/volumes/light", views), ("diffuse/volumes/light-samples", samples)];
+    let lists: Vec<_> = lists.into_iter().filter_map(|(name, lights)| Some((name, lights?))).collect();
+    if lists.is_empty() {
+        graph.fill_buffer("diffuse/volumes/clear-light", light, 0);
+    }
+    for step in steps_of(&lists, graph.traits().loop_steps, options) {
+        let (first_group, end_group) = (step.first_group, step.end_group);
+        let adds = step.number > 0;
+        let into = if adds { light.read_write() } else { light.start_then_read() };
+        let (area_lights, light_caches) = (step.lights.group.clone(), caches.group.clone());
+        let (adds, capacity) = (u32::from(adds), caches.capacity);
         if let Some(voxels) = &voxels {
-            let push = LightConesPush { rays, first_group, end_group, capacity, seen_words };
             let pass = LightCones {
                 voxels: voxels.group.clone(),
                 area_lights,
                 light_caches,
                 light: into,
-                seen: ReadWriteBuffer::absent(),
                 bands: options.bands,
-                keeps_seen: 0,
-                push,
+                paper: u32::from(options.val == VolumesVal::Paper),
+                push: LightConesPush { rays, first_group, end_group, capacity, adds },
             };
-            graph.pass(&name, pass).threads_indirect(caches.head, 0);
+            graph.pass(&step.name, pass).threads_indirect(caches.head, 0);
         } else {
             let pass = Light {
                 scene_rays: scene.clone(),
                 area_lights,
                 light_caches,
                 light: into,
-                seen: seen.map_or(ReadWriteBuffer::absent(), |seen| match first {
-                    0 => seen.start_then_read(),
-                    _ => seen.read_write(),
-                }),
                 bands: options.bands,
-                keeps_seen: u32::from(shares),
+                paper: u32::from(options.val == VolumesVal::Paper),
                 traces: u32::from(options.visibility == VolumesVisibility::Rays),
-                push: LightPush { rays, first_group, end_group, capacity, seen_words },
+                push: LightPush { rays, first_group, end_group, capacity, adds },
             };
-            graph.pass(&name, pass).threads_indirect(caches.head, 0);
+            graph.pass(&step.name, pass).threads_indirect(caches.head, 0);
         }
-    }
-    if let Some(bits) = seen {
-        cx.frame.offers.put(SeenLights { bits, words: seen_words });
     }
     light
 }

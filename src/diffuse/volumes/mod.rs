@@ -2,19 +2,23 @@
 //!
 //! 1. The light views are reduced to virtual area lights, and caches made at the nodes of grids around the eye where a visible surface lies (`frame/caches/`, shared with
 //!    whoever lights the same caches for another slot).
-//! 2. `light.rs`: the light that comes to each cache, as spherical harmonics.
-//! 3. `apply.rs`: every pixel interpolates between its eight caches.
+//! 2. Samples of all surfaces become such lights too, by the light of emissive surfaces and the sky and by what was reflected before (`frame/bounces/`).
+//! 3. `light.rs`: the light that comes to each cache, as spherical harmonics.
+//! 4. `apply.rs`: every pixel interpolates between its eight caches.
 
 mod apply;
 mod light;
+mod mirrored;
 pub(crate) mod options;
 #[cfg(test)]
 mod tests;
 
 use std::rc::Rc;
 
-use self::options::{VolumesOptions, VolumesVisibility, VolumesWeights};
-use crate::frame::caches::AreaLights;
+use self::options::{VolumesAreaLights, VolumesOptions, VolumesSpread, VolumesVal, VolumesVisibility, VolumesWeights};
+use crate::frame::bounces::{self, BounceRule};
+use crate::frame::caches::{AreaLights, LightRule, Picture, area_lights, spread_lights};
+use crate::frame::mirrored::MirroredPoints;
 use crate::frame::voxels;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
@@ -28,14 +32,22 @@ impl Method for Volumes {
     const NAME: &'static str = "volumes";
     const SLOT: Slot = Slot::Diffuse;
     type Options = VolumesOptions;
+    const LIGHTS_MIRRORED: bool = true;
 
-    fn light_paths(_: &VolumesOptions) -> LightPaths {
-        LightPaths::up_to(1)
+    fn light_paths(options: &VolumesOptions) -> LightPaths {
+        LightPaths::up_to(options.bounces)
     }
 
     fn inputs(options: &VolumesOptions) -> Inputs {
         let traces = options.visibility == VolumesVisibility::Rays || options.weights == VolumesWeights::Rays;
-        let rays = if traces { Rays::ToSurfaces } else { Rays::None };
+        let traces = traces || options.spread == VolumesSpread::Picture || options.bounces > 1;
+        let rays = if options.area_lights == VolumesAreaLights::Rays {
+            Rays::ToLights
+        } else if traces {
+            Rays::ToSurfaces
+        } else {
+            Rays::None
+        };
         Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() }
     }
 
@@ -43,11 +55,17 @@ impl Method for Volumes {
         let cones = options.visibility == VolumesVisibility::Cones;
         let voxels = if cones { voxels::shaders(&options.voxel_settings()) } else { Vec::new() };
         let light = if cones { "volumes/light_cones" } else { "volumes/light" };
-        ["caches/*", "volumes/apply", light].into_iter().chain(voxels).collect()
+        let samples = options.bounces > 1 || options.area_lights == VolumesAreaLights::Rays;
+        let bounces: &[_] = if samples { &["bounces/*"] } else { &[] };
+        ["caches/*", "volumes/apply", "volumes/mirrored", light].iter().chain(bounces).copied().chain(voxels).collect()
     }
 
-    fn skip(_: &VolumesOptions, facts: &Facts) -> Option<&'static str> {
-        (!facts.diffuse).then_some("no diffuse surface")
+    fn skip(options: &VolumesOptions, facts: &Facts) -> Option<&'static str> {
+        match (facts.diffuse, options.bounces) {
+            (false, _) => Some("no diffuse surface"),
+            (_, 0) => Some("no bounce asked for"),
+            _ => None,
+        }
     }
 
     fn declare(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Result<Option<ImageRef>, Error> {
@@ -59,14 +77,62 @@ impl Method for Volumes {
 pub(crate) struct Made {
     pub(crate) diffuse: ImageRef,
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
-    pub(crate) lights: Rc<AreaLights>,
+    pub(crate) lights: Option<Rc<AreaLights>>,
+    #[cfg_attr(not(test), allow(dead_code, reason = "as above"))]
+    pub(crate) samples: Rc<Option<AreaLights>>,
+}
+
+fn light_rule(options: &VolumesOptions) -> LightRule {
+    LightRule {
+        side: options.lights,
+        lod: options.lod,
+        paper: options.val == VolumesVal::Paper,
+        punctual: options.area_lights == VolumesAreaLights::Rays,
+    }
+}
+
+/// Lights of what the light views see, if any do.
+fn lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<AreaLights>> {
+    let rule = light_rule(options);
+    if cx.frame.set.views_of(rule.punctual).is_empty() || options.spread == VolumesSpread::Views {
+        return even_lights(cx, options);
+    }
+    let (scene_rays, rays) = cx.cache_rays();
+    let picture = Picture { surface: cx.frame.surface, scene_rays, shift: rays.shift };
+    Some(cx.shared((rule, options.spread), |cx, (rule, _)| {
+        spread_lights(cx.graph, cx.frame.set, cx.lights(), &picture, rule)
+    }))
+}
+
+fn even_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<AreaLights>> {
+    let rule = light_rule(options);
+    let any = !cx.frame.set.views_of(rule.punctual).is_empty();
+    any.then(|| cx.shared(rule, |cx, rule| area_lights(cx.graph, cx.frame.set, cx.lights(), rule)))
+}
+
+/// Lights of what samples of the surfaces reflect, if anything is asked of them.
+fn sample_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Rc<Option<AreaLights>> {
+    let area_lights = options.area_lights == VolumesAreaLights::Rays;
+    let rule = BounceRule { bounces: options.bounces, samples: options.samples, lod: options.lod, area_lights };
+    let Some(scene) = cx.rays().filter(|scene| rule.wants_samples(scene)) else { return Rc::new(None) };
+    let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
+    // Whatever the picture shows, so that they stand while the camera moves.
+    let first = if options.bounces > 1 { even_lights(cx, options) } else { None };
+    cx.shared((light_rule(options), rule), |cx, (_, rule)| {
+        bounces::sample_lights(cx.graph, scene, shift, first.as_deref(), rule)
+    })
 }
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn volumes(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Made {
-    let settings = options.cache_settings();
-    let (lights, caches) = (cx.area_lights(&settings), cx.caches(&settings));
-    let light = light::light(cx, &lights, &caches, options);
+    let lights = lights(cx, options);
+    let caches = cx.caches(&options.cache_settings());
+    let samples = sample_lights(cx, options);
+    let light = light::light(cx, (lights.as_deref(), (*samples).as_ref()), &caches, options);
+    if let Some(points) = cx.frame.offers.get::<MirroredPoints>() {
+        let shown = mirrored::light(cx, &points, &caches, light, options);
+        cx.frame.offers.put(shown);
+    }
     let diffuse = apply::apply(cx, &caches, light, options);
-    Made { diffuse, lights }
+    Made { diffuse, lights, samples }
 }

@@ -72,6 +72,24 @@ choices! {
     }
 }
 choices! {
+    /// How the light of emissive surfaces and of the sky gets to the surfaces that reflect it first.
+    VolumesAreaLights {
+        /// By views from a few samples of them: the paper.
+        Views = "views",
+        /// By rays from samples of all surfaces.
+        Rays = "rays",
+    }
+}
+choices! {
+    /// Where virtual area lights are small.
+    VolumesSpread {
+        /// Alike in all light views: the paper.
+        Views = "views",
+        /// Where they light the picture: rays from some of its points weigh them.
+        Picture = "picture",
+    }
+}
+choices! {
     /// What a virtual area light's area A adds to the squared distance d².
     VolumesVal {
         /// A: the paper.
@@ -86,6 +104,8 @@ options! {
     VolumesOptions, "volumes":
     /// The light views are reduced to the square of this many virtual area lights, all together, or as near to it as blocks of whole powers of two come.
     lights: u32 = 64, draft = 32, high = 128, paper = 64; OptionKind::OneOf(&[16, 32, 64, 128, 256, 512]), "", "quadratic";
+    /// Which lights are small, and so many.
+    spread: VolumesSpread = VolumesSpread::Picture, draft = VolumesSpread::Views, paper = VolumesSpread::Views; OptionKind::Choice(VolumesSpread::NAMES), "", "";
     /// Address volumes around the camera; cells of each are twice as large as those of the one before it.
     cascades: u32 = 4; OptionKind::Integer(1, 8), "volumes", "";
     /// Nodes along an edge of an address volume. Where cells follow from the scene, more make them smaller.
@@ -116,6 +136,12 @@ options! {
     placement: VolumesPlacement = VolumesPlacement::Visible; OptionKind::Choice(VolumesPlacement::NAMES), "", "";
     /// What caches count by, beside their distances, for a pixel between them.
     weights: VolumesWeights = VolumesWeights::Trilinear, high = VolumesWeights::Rays; OptionKind::Choice(VolumesWeights::NAMES), "", "";
+    /// How the light of emissive surfaces and of the sky gets to the surfaces that reflect it first.
+    area_lights: VolumesAreaLights = VolumesAreaLights::Rays, paper = VolumesAreaLights::Views; OptionKind::Choice(VolumesAreaLights::NAMES), "", "";
+    /// Scatterings between the light and the first visible surface at most; 0: no indirect light. From the second on samples of the whole scene's surfaces exchange light.
+    bounces: u32 = 1, high = 16; OptionKind::Integer(0, 16), "scatterings", "";
+    /// Samples of all diffuse surface, with `bounces` beyond 1, and with `area_lights=rays` where there are any.
+    samples: u32 = 4096, draft = 1024, high = 16384; OptionKind::Integer(16, 16384), "samples", "linear, quadratic beyond two bounces";
     /// What the area of a virtual area light adds to the squared distance.
     val: VolumesVal = VolumesVal::Disc, paper = VolumesVal::Paper; OptionKind::Choice(VolumesVal::NAMES), "", "";
 }
@@ -124,7 +150,12 @@ impl VolumesOptions {
     /// The caches, which other methods may light too.
     pub(crate) fn cache_settings(&self) -> CacheSettings {
         CacheSettings {
-            lights: LightRule { side: self.lights, lod: self.lod, paper: self.val == VolumesVal::Paper },
+            lights: LightRule {
+                punctual: false,
+                side: self.lights,
+                lod: self.lod,
+                paper: self.val == VolumesVal::Paper,
+            },
             cascades: CascadeRule { count: self.cascades, resolution: self.resolution, cell: self.cell },
             moves: self.placement == VolumesPlacement::Visible,
             sight: match self.visibility {

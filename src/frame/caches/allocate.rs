@@ -5,18 +5,25 @@ use glam::{DVec3, Vec3};
 
 use super::cascades::CascadeRule;
 use crate::frame::inputs::FrameInputs;
+use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
-use crate::shaders::caches::{Allocate, AllocatePush, Ask, AskPush, Move, MovePush, Settle, SettlePush};
+use crate::shaders::caches::{
+    Allocate, AllocatePush, Ask, AskMirrored, AskMirroredPush, AskPush, Look, LookPush, Move, MovePush, Settle,
+    SettlePush,
+};
 use crate::shaders::groups::LightCaches;
 use crate::shaders::types;
 
 const WORD: vk::Format = vk::Format::R32_UINT;
+const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Caches, and what pixels ask for, that memory is held for at first.
 const LEAST: usize = 8192;
 const LEAST_ASKS: usize = 32768;
+/// Of a cache's horizons (glsl/caches/horizons.glsl).
+const HORIZON_WORDS: usize = 6 * 8;
 /// Ways along the axes (glsl/caches/moves.glsl).
 const WAYS: usize = 6;
 /// How often caches move: two planes at a right angle, however they stand, take two.
@@ -53,7 +60,7 @@ impl<T> List<T> {
     }
 }
 
-/// Declares the passes. `moves`: caches behind surfaces move before them.
+/// Declares the passes; what mirrors show has caches too, if somebody listed it. `moves`: caches behind surfaces move before them.
 pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &CascadeRule, moves: bool) -> Caches {
     let (surface, data) = (frame.surface, frame.data);
     let eye: DVec3 = Vec3::from(frame.camera.position_rs).as_dvec3();
@@ -66,6 +73,19 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
         push: AskPush { cascades, capacity: asks.capacity() },
     };
     graph.pass("caches/places/ask", pass).unordered().count("asks", asks.head, 3).pixels(surface.size);
+    if let (Some(points), Some(traced)) = (frame.offers.get::<MirroredPoints>(), frame.traced) {
+        let shift = (data.origin - traced.origin).as_vec3().to_array();
+        for (number, list) in points.lists.iter().enumerate() {
+            let pass = AskMirrored {
+                mirrored: list.group(),
+                asks: asks.items.modify(),
+                head: asks.head.read_write(),
+                push: AskMirroredPush { cascades, shift, capacity: asks.capacity() },
+            };
+            let pass = graph.pass(&format!("caches/places/ask-mirrored.{number}"), pass).unordered();
+            pass.threads_indirect(list.arguments, 0);
+        }
+    }
     graph.grows(asks.items, asks.head, 3);
 
     let addresses = graph.buffer::<u32>("caches.addresses", rule.count as usize * (rule.resolution as usize).pow(3));
@@ -92,8 +112,32 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
         cache_head: nodes.head.texels(WORD),
         cache_positions: positions.texels(FLOATS),
         cache_addresses: addresses.texels(WORD),
+        cache_horizons: horizons(graph, rule, (&asks, &nodes), addresses, positions).texels(WORDS),
     };
     Caches { group, head: nodes.head, positions, capacity: nodes.capacity() }
+}
+
+/// What the surfaces that ask for each cache have in front of them.
+fn horizons(
+    graph: &mut Graph<'_>,
+    rule: &CascadeRule,
+    (asks, nodes): (&List<types::Ask>, &List<u32>),
+    addresses: BufferRef<u32>,
+    positions: BufferRef<[f32; 4]>,
+) -> BufferRef<u32> {
+    let capacity = nodes.capacity();
+    let horizons = graph.buffer::<u32>("caches.horizons", HORIZON_WORDS * capacity as usize);
+    graph.fill_buffer("caches/places/clear-horizons", horizons, 0);
+    let pass = Look {
+        asks: asks.items.read(),
+        ask_head: asks.head.texels(WORD),
+        addresses: addresses.texels(WORD),
+        positions: positions.texels(FLOATS),
+        horizons: horizons.read_write(),
+        push: LookPush { resolution: rule.resolution.cast_signed(), ask_capacity: asks.capacity(), capacity },
+    };
+    graph.pass("caches/places/look", pass).unordered().threads_indirect(asks.head, 0);
+    horizons
 }
 
 /// Where the caches lie.

@@ -8,6 +8,7 @@ mod hierarchy;
 mod lightmap;
 mod looks;
 mod motion;
+mod samples;
 mod sobol;
 mod surfaces;
 mod targets;

@@ -10,12 +10,16 @@ use super::hierarchy::hierarchy;
 use super::lightmap::{Lightmap, Taking, Texels};
 use super::looks::Looks;
 use super::motion::{Motion, Part, motion, parts};
+use super::samples::SurfaceSamples;
 use super::tessellation::Tessellation;
 use super::triangles::{Corners, TracedTriangle, flatten};
 use super::uploaded::{BYTES, FLOAT, FLOATS, Uploaded, WORDS};
 use crate::graph::hash_of;
 use crate::scene::{Bounds, Cutout, Extent, Facts, Scene};
 use crate::vulkan::{Device, VulkanError};
+
+/// What was made last, and of what.
+type Held<K, T> = Mutex<Option<(K, Arc<T>)>>;
 
 pub(crate) struct Surfaces {
     pub(super) key: u64,
@@ -51,9 +55,11 @@ pub(crate) struct Surfaces {
     /// Of each triangle that matters, m², the same bits wherever it moves; 0 for others.
     areas: Vec<f32>,
     /// The last one that was asked for, with its spacing.
-    tessellation: Mutex<Option<(f64, Arc<Tessellation>)>>,
+    tessellation: Held<f64, Tessellation>,
+    /// Likewise, with how many of them there are and in clusters of how many.
+    samples: Held<(u32, u32), SurfaceSamples>,
     /// Likewise, with how finely it is cut.
-    lightmap: Mutex<Option<(Texels, Arc<Lightmap>)>>,
+    lightmap: Held<Texels, Lightmap>,
     pub(super) own_areas: Uploaded,
     pub(super) nodes: Uploaded,
     pub(super) leaves: Uploaded,
@@ -115,6 +121,7 @@ impl Surfaces {
             backs: backs.unwrap_or_default(),
             tessellation: Mutex::new(None),
             lightmap: Mutex::new(lightmap),
+            samples: Mutex::new(None),
             own_areas: Uploaded::new(device, "traced.areas", &areas, FLOAT, key)?,
             areas,
             nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
@@ -168,6 +175,38 @@ impl Surfaces {
                 let taking = Taking { sides, backs: self.backs(), areas: &self.areas };
                 let made = Arc::new(Lightmap::new(&self.triangles, &self.parts, &taking, texels));
                 *held = Some((texels, made.clone()));
+                made
+            }
+        }
+    }
+
+    /// So many points, in clusters; `sides`: of each material, those that take diffuse light. The last ones stand.
+    pub(super) fn samples(&self, wanted: (u32, u32), sides: &[u32]) -> Arc<SurfaceSamples> {
+        let mut held = self.samples.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*held {
+            Some((known, samples)) if *known == wanted => samples.clone(),
+            _ => {
+                let backs = self.backs();
+                let back_seen =
+                    |number: usize| backs.get(number / 32).is_some_and(|word| word >> (number % 32) & 1 == 1);
+                let sides_of = |number: usize| match sides[self.triangles[number].material as usize] {
+                    1 if back_seen(number) => 2,
+                    sides => sides,
+                };
+                let area = |number: usize| {
+                    let area = f64::from(self.areas[number]) * f64::from(sides_of(number));
+                    if area.is_finite() { area } else { 0.0 }
+                };
+                let mut surfaces: Vec<[f64; 2]> = (0..self.triangles.len()).map(|number| [area(number), 1.0]).collect();
+                // The ground around a house has most of the area, and the house's rooms most of what matters.
+                for part in &self.parts {
+                    let of_part = &mut surfaces[part.triangles()];
+                    let whole: f64 = of_part.iter().map(|[area, _]| area).sum();
+                    of_part.iter_mut().for_each(|[_, density]| *density = whole.max(f64::MIN_POSITIVE).sqrt().recip());
+                }
+                let made = SurfaceSamples::new(&self.triangles, &surfaces, |number| sides_of(number) == 2, wanted);
+                let made = Arc::new(made);
+                *held = Some((wanted, made.clone()));
                 made
             }
         }

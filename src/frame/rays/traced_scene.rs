@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::emitters::{EmitterTable, emitter_table};
 use super::lightmap::{Lightmap, Texels};
 use super::looks::Looks;
+use super::samples::SurfaceSamples;
 use super::surfaces::{Surfaces, surfaces_key};
 use super::targets::{Reach, TargetShares, targets};
 use super::tessellation::Tessellation;
@@ -212,6 +213,11 @@ impl TracedScene {
     /// Light maps of all diffuse surfaces, cut so finely.
     pub(crate) fn lightmap(&self, texels: Texels) -> Arc<Lightmap> {
         self.surfaces.lightmap(texels, &self.looks.diffuse_sides)
+    }
+
+    /// So many points spread evenly over all diffuse surface, in clusters of so many neighbours.
+    pub(crate) fn surface_samples(&self, count: u32, cluster: u32) -> Arc<SurfaceSamples> {
+        self.surfaces.samples((count, cluster), &self.looks.diffuse_sides)
     }
 
     /// The area of all sides with a diffuse lobe, m².

@@ -3,8 +3,8 @@
 use ash::vk;
 
 use super::options::RadianceMapsOptions;
-use crate::frame::caches::{AreaLights, CacheSight, Caches, SeenLights};
-use crate::graph::bindings::{BufferRef, ReadBuffer};
+use crate::frame::caches::{AreaLights, CacheSight, Caches};
+use crate::graph::bindings::BufferRef;
 use crate::method::FrameCx;
 use crate::shaders::radiance_maps::{
     Bound, BoundPush, Choose, ChoosePush, Mips, MipsPush, Write, WriteCones, WriteConesPush, WritePush,
@@ -134,8 +134,6 @@ fn write(
         CacheSight::Open | CacheSight::Rays => None,
     };
     let surface = cx.frame.surface.group.clone();
-    let seen = cx.frame.offers.get::<SeenLights>();
-    let seen_words = seen.as_ref().map_or(0, |seen| seen.words);
     let graph = &mut *cx.graph;
     let most = groups_at_once(lights, &sight, graph.traits().loop_steps);
     let (map_side, cached, fill) = (options.size.cast_signed(), u32::from(options.is_cached()), options.fill_kind());
@@ -153,7 +151,7 @@ fn write(
             (maps.head.texels(WORD), maps.caches.texels(WORD), bounds.texels(FLOAT));
         if let Some(voxels) = &voxels {
             let voxels = voxels.group.clone();
-            let push = WriteConesPush { rays, first_group, end_group, capacity, seen_words };
+            let push = WriteConesPush { rays, first_group, end_group, capacity };
             let pass = WriteCones {
                 voxels,
                 area_lights,
@@ -164,8 +162,6 @@ fn write(
                 map_bounds,
                 sums,
                 horizons: maps.horizons.read(),
-                seen: ReadBuffer::absent(),
-                knows_seen: 0,
                 map_side,
                 cached,
                 fill,
@@ -173,7 +169,7 @@ fn write(
             };
             graph.pass(&name, pass).threads_indirect(maps.head, 0);
         } else {
-            let push = WritePush { rays, first_group, end_group, capacity, seen_words };
+            let push = WritePush { rays, first_group, end_group, capacity };
             let pass = Write {
                 scene_rays: scene.clone(),
                 area_lights,
@@ -184,8 +180,6 @@ fn write(
                 map_bounds,
                 sums,
                 horizons: maps.horizons.read(),
-                seen: seen.as_ref().map_or(ReadBuffer::absent(), |seen| seen.bits.read()),
-                knows_seen: u32::from(seen.is_some()),
                 traces: u32::from(sight == CacheSight::Rays),
                 map_side,
                 cached,

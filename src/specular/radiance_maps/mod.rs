@@ -17,7 +17,7 @@ use self::maps::Maps;
 use self::options::{RadianceMapsFill, RadianceMapsLobe, RadianceMapsLookup, RadianceMapsOptions, RadianceMapsWrite};
 #[cfg(test)]
 pub(crate) use self::tables::direction_of_texel;
-use crate::frame::caches::{AreaLights, SeenWanted};
+use crate::frame::caches::AreaLights;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method};
 use crate::scene::Facts;
@@ -49,10 +49,6 @@ impl Method for RadianceMaps {
             (_, false) => Some("no diffuse surface"),
             _ => None,
         }
-    }
-
-    fn prepare(cx: &mut FrameCx<'_, '_>, _: &RadianceMapsOptions) {
-        cx.frame.offers.put(SeenWanted);
     }
 
     fn declare(cx: &mut FrameCx<'_, '_>, options: &RadianceMapsOptions) -> Result<Option<ImageRef>, Error> {

@@ -1,6 +1,6 @@
 // A virtual point light as a disc, for receivers close to it, where a point shows as a bright spot beside dark ones.
-#ifndef VPL_DISC
-#define VPL_DISC
+#ifndef LIB_DISC
+#define LIB_DISC
 
 #include "lib/vpl.glsl"
 
@@ -61,6 +61,38 @@ float disc_form_factor(Vpl vpl, vec3 position_rs, vec3 normal) {
         across = 0.5 * (across + both) + 0.5 * fold * (both - across);
     }
     return in_front_of_disc ? max(along + across, 0.0) : 0.0;
+}
+
+// The same for a receiver without a normal: the vector whose component along any normal is the factor, while the plane of x does not cut the disc. Where it does, over the disc's
+// foot, the part across the axis is folded as above for the surface that faces along `facing`, which need not be a unit vector: of length 0 nothing is folded.
+vec3 disc_vector(Vpl vpl, vec3 position_rs, vec3 facing) {
+    vec3 difference = vpl.position_rs - position_rs;
+    float squared = dot(difference, difference);
+    float radius2 = vpl.area_over_pi;
+    float height = -dot(vpl.normal, difference);
+    if (height <= 0.0 || height * height <= LEAST_HEIGHT * LEAST_HEIGHT * radius2) {
+        return vec3(0.0);
+    }
+    float beyond = squared - radius2;
+    float s = sqrt(beyond * beyond + 4.0 * radius2 * height * height) + 1e-20;
+    float above = beyond > 0.0 ? height * height : s - beyond;
+    float below = beyond > 0.0 ? s + beyond : 4.0 * radius2;
+    vec3 across = (2.0 * height / ((s + squared + radius2) * s)) * (difference + height * vpl.normal);
+    float from_axis2 = squared - height * height;
+    vec3 sideways = facing - dot(facing, vpl.normal) * vpl.normal;
+    float turned = length(sideways);
+    if (from_axis2 < radius2 && turned > 1e-3) {
+        sideways /= turned;
+        float radius = sqrt(radius2);
+        float half_disc = INVERSE_PI * (atan(radius / height) - radius * height / (radius2 + height * height)) / radius2;
+        float along_radius2 = from_axis2 / radius2;
+        float halves = 2.0 * half_disc * (1.0 - along_radius2 * along_radius2 * along_radius2);
+        float own = dot(across, sideways);
+        float both = sqrt(own * own + halves * halves);
+        float fold = clamp(4.0 * dot(facing, difference) / (turned * radius), 0.0, 1.0);
+        across += (0.5 * (own + both) + 0.5 * fold * (both - own) - own) * sideways;
+    }
+    return across - (2.0 * above / (below * s)) * vpl.normal;
 }
 
 #endif

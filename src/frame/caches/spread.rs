@@ -1,0 +1,131 @@
+//! Virtual area lights that are small where they give the picture much, and large where they give it little: a cut through the squares of light views, by what points of the picture
+//! receive of their blocks (in the manner of Walter et al. 2005, lightcuts, one cut for all of a picture).
+
+use ash::vk;
+
+use super::lights::{AreaLights, LightRule, reduced};
+use crate::frame::gbuffer::GBuffer;
+use crate::frame::light_set::LightSet;
+use crate::frame::light_views::LightViews;
+use crate::graph::Graph;
+use crate::graph::bindings::BufferRef;
+use crate::shaders::caches::{
+    Coarser, CoarserPush, Cut, CutPush, Merge, MergePush, ScanCuts, ScanCutsPush, Total, TotalPush, Weigh, WeighPush,
+};
+use crate::shaders::groups::{self, SceneRays};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const PAIRS: vk::Format = vk::Format::R32G32_SFLOAT;
+const WORD: vk::Format = vk::Format::R32_UINT;
+
+/// Blocks are finer by this factor of their side than if all were alike, and lights of this many levels of them.
+const FINER: u32 = 4;
+const LEVELS: u32 = 4;
+/// Points of the picture that each block is weighed by.
+const RAYS: u32 = 8;
+
+/// The picture, and the scene that its rays meet.
+pub(crate) struct Picture<'p> {
+    pub(crate) surface: &'p GBuffer,
+    pub(crate) scene_rays: SceneRays,
+    /// From render space to that of rays.
+    pub(crate) shift: [f32; 3],
+}
+
+/// Declares the passes.
+pub(crate) fn spread_lights(
+    graph: &mut Graph<'_>,
+    set: &LightSet,
+    views: &LightViews,
+    picture: &Picture<'_>,
+    rule: &LightRule,
+) -> AreaLights {
+    let finer = LightRule { side: FINER * rule.side, lod: LEVELS, ..*rule };
+    let slots = reduced(graph, set, views, &finer, "spread");
+    let slot_count = slots.count() as u32 / 2;
+    let matter = weigh(graph, picture, slots, slot_count);
+    let total = graph.buffer::<[f32; 2]>("spread.matter.total", 1);
+    let pass =
+        Total { matter: matter.texels(PAIRS), total: total.write(), push: TotalPush { slot_count, level: LEVELS } };
+    graph.pass("caches/spread/total", pass).groups([1, 1, 1]);
+    // Lights that the bound leaves matter between a quarter of it and all: about side² of them.
+    let group_lights = 1 << (2 * rule.lod);
+    let light_bound = 2.0 / (rule.side as f32).powi(2);
+    let cuts = graph.buffer::<u32>("spread.cuts", slot_count as usize);
+    let pass = Cut {
+        matter: matter.texels(PAIRS),
+        total: total.texels(PAIRS),
+        cuts: cuts.write(),
+        push: CutPush { slot_count, last_level: LEVELS, light_bound, group_bound: light_bound * group_lights as f32 },
+    };
+    graph.pass("caches/spread/cut", pass).threads([slot_count, 1, 1]);
+    merge(graph, slots, cuts, (slot_count, most_groups(slot_count, rule), group_lights))
+}
+
+/// A group's parent matters more than the bound, or it is of the last level.
+fn most_groups(slot_count: u32, rule: &LightRule) -> u32 {
+    let parents = LEVELS * (rule.side.pow(2) >> (2 * rule.lod + 1)).max(1);
+    slot_count.min((slot_count >> (2 * LEVELS)) + 4 * parents)
+}
+
+/// What the nodes of all levels matter.
+fn weigh(
+    graph: &mut Graph<'_>,
+    picture: &Picture<'_>,
+    slots: BufferRef<[f32; 4]>,
+    slot_count: u32,
+) -> BufferRef<[f32; 2]> {
+    let node_count: u32 = (0..=LEVELS).map(|level| slot_count >> (2 * level)).sum();
+    let matter = graph.buffer::<[f32; 2]>("spread.matter", node_count as usize);
+    let pass = Weigh {
+        surface: picture.surface.group.clone(),
+        scene_rays: picture.scene_rays.clone(),
+        slots: slots.texels(FLOATS),
+        matter: matter.start(),
+        push: WeighPush { shift: picture.shift, slot_count, ray_count: RAYS },
+    };
+    let pass = graph.pass("caches/spread/weigh", pass).note("rays at most", u64::from(RAYS * slot_count));
+    pass.threads([slot_count, 1, 1]);
+    for level in 1..=LEVELS {
+        let pass = Coarser { matter: matter.read_write(), push: CoarserPush { slot_count, level } };
+        graph.pass(&format!("caches/spread/coarser.{level}"), pass).threads([slot_count >> (2 * level), 1, 1]);
+    }
+    matter
+}
+
+fn merge(
+    graph: &mut Graph<'_>,
+    slots: BufferRef<[f32; 4]>,
+    cuts: BufferRef<u32>,
+    (slot_count, group_count, group_lights): (u32, u32, u32),
+) -> AreaLights {
+    let offsets = graph.buffer::<[u32; 2]>("spread.offsets", slot_count as usize + 1);
+    let counts = graph.buffer::<u32>("spread.light_counts", 2);
+    // On each level fewer nodes of a group than its lights are to be matter more than a light's bound.
+    let most_lights = 3 * LEVELS * group_lights + 1;
+    let pass = ScanCuts {
+        cuts: cuts.texels(WORD),
+        offsets: offsets.write(),
+        counts: counts.write(),
+        push: ScanCutsPush { slot_count, group_count },
+    };
+    let pass = graph.pass("caches/spread/scan", pass).count("lights", counts, 0).count("groups", counts, 1);
+    pass.groups([1, 1, 1]);
+    let lights = graph.buffer::<[f32; 4]>("spread.lights", 2 * slot_count as usize);
+    let lists = graph.buffer::<[u32; 4]>("spread.light_groups", 2 * group_count as usize);
+    let pass = Merge {
+        slots: slots.texels(FLOATS),
+        cuts: cuts.texels(WORD),
+        offsets: offsets.texels(vk::Format::R32G32_UINT),
+        lights: lights.start(),
+        groups: lists.start(),
+        push: MergePush { slot_count, group_count },
+    };
+    graph.pass("caches/spread/merge", pass).threads([slot_count, 1, 1]);
+    let group = groups::AreaLights {
+        area_lights: lights.texels(FLOATS),
+        area_light_groups: lists.texels(vk::Format::R32G32B32A32_UINT),
+        area_light_counts: counts.texels(WORD),
+    };
+    AreaLights { group, group_count, group_lights: most_lights, lights, counts }
+}
