@@ -1,6 +1,7 @@
 //! Light maps against closed forms and paths, and what stands when something changes.
 
 mod frames;
+mod photons;
 
 use glam::{DAffine3, DVec3};
 
@@ -85,6 +86,7 @@ fn pictures_are_those_of_paths() {
         ("lamp", lamp_box(), None),
         ("sky", open_room(), None),
         ("sun", sunlit_corner(), None),
+        ("ring", with_camera("ring"), None),
     ];
     for (name, (scene, camera), bounces) in cases {
         let settings = settings(LightmapsOptions { bounces, ..options() });
