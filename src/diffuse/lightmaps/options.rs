@@ -40,7 +40,7 @@ options! {
     /// Side of a texel; 0: by `count`.
     texel: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
     /// Texels on the area of all surfaces; many small surfaces take up to twice as many.
-    count: u32 = 16_000, draft = 5_000, high = 48_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
+    count: u32 = 24_000, draft = 8_000, high = 60_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
     /// Rays that a texel is gathered by.
     rays: u32 = 256, draft = 96, high = 1024; OptionKind::Integer(16, 4096), "rays", "linear";
     /// What the approximated illumination map is made of.

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::super::options::{LightmapsInvalidate, LightmapsOptions, LightmapsSource};
 use super::frames::{asked, difference, frame, renewed, scale_light, until_still};
-use super::{lamp_box, open_room, options, settings, with_camera};
+use super::{lamp_box, leak_of_a_parted_room, open_room, options, settings, with_camera};
 use crate::gpu_tests::against_paths::{against_paths, leaks};
 use crate::gpu_tests::scenes::{add_light, box_faces, lambert, place, view};
 use crate::gpu_tests::session::Session;
@@ -44,6 +44,13 @@ fn light_stays_out_of_dark_rooms() {
     let found = leaks(&Session::open(), &settings(by_photons()), [32, 24]);
     println!("{found:?} of the lit hall's light");
     assert!(found.iter().all(|&share| share < 1e-3), "{found:?} of the lit hall's light");
+}
+
+#[test]
+fn one_floor_under_two_rooms_does_not_leak() {
+    let found = leak_of_a_parted_room(&Session::open(), &settings(by_photons()));
+    println!("{found:.1e} of the lit half's light");
+    assert!(found < 1e-3, "{found}");
 }
 
 /// Two closed rooms, a light in each, and a block in the first.
