@@ -5,12 +5,8 @@
 #include "groups/scene_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
-#include "lib/emissive_points.glsl"
-#include "lib/emitters.glsl"
 #include "lib/hit_vertex.glsl"
-#include "lib/lights.glsl"
-#include "lib/parallel_light.glsl"
-#include "lib/ray_offset.glsl"
+#include "lib/photon_start.glsl"
 #include "lib/sobol.glsl"
 #include "final_gather/records.glsl"
 
@@ -47,68 +43,20 @@ layout(push_constant, scalar) uniform Push {
 
 const uint STREAMS = 0xF16A7u;
 
-struct Start {
-    vec3 origin;
-    vec3 direction;
-    vec3 flux;
-    float range;  // of a light that ends, m; 0: none
-};
-
-Start start_on_disc(vec3 direction, vec3 flux, vec2 random) {
-    vec3 origin = point_of_disc(frame_around(direction), push.middle, push.radius, random);
-    bool hidden = FAR_SURFACES != 0u && is_occluded(origin, -direction, 3e38);
-    return Start(origin, direction, hidden ? vec3(0.0) : flux, 0.0);
-}
-
-Start start_at_sky(vec4 random, float probability) {
-    float height = 1.0 - 2.0 * random.x;
-    float azimuth = 2.0 * PI * random.y;
-    vec3 direction = vec3(sqrt(max(1.0 - height * height, 0.0)) * vec2(cos(azimuth), sin(azimuth)), height);
-    return start_on_disc(direction, push.sky * (4.0 * PI * PI * push.radius * push.radius / probability), random.zw);
-}
-
-Start start_at_light(Emitter emitter, vec4 random, float probability) {
-    Light light = load_light(punctual_lights, emitter.number);
-    if (light.kind == LIGHT_DIRECTIONAL) {
-        return start_on_disc(light.direction, light.intensity * (PI * push.radius * push.radius / probability), random.xy);
-    }
-    // Uniform in the cone, or over the sphere.
-    float depth = light.kind == LIGHT_SPOT ? 1.0 + light.spot_offset / light.spot_scale : 2.0;
-    float cosine = 1.0 - depth * random.x;
-    float azimuth = 2.0 * PI * random.y;
-    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    vec3 direction = to_world(frame_around(light.direction), vec3(sine * cos(azimuth), sine * sin(azimuth), cosine));
-    return Start(light.position_rs, direction, radiant_intensity(light, direction) * (2.0 * PI * depth / probability), light.range);
-}
-
-Start start_at_triangle(Emitter emitter, vec2 place_random, vec4 random, float chosen) {
-    Triangle triangle = load_triangle(triangles, emitter.number);
-    Material material = load_material(materials, triangle.material);
-    bool both_sides = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
-    EmissivePoint point = draw_emissive_point(triangle, place_random);
-    vec3 normal = front_normal(triangle);
-    vec3 position = point_of_triangle(triangle, point.place, normal);
-    normal = both_sides && random.z < 0.5 ? -normal : normal;
-    vec3 direction = to_world(frame_around(normal), sample_cosine_hemisphere(random.xy));
-    float sides = both_sides ? 2.0 : 1.0;
-    // point.density: that of the light's choice included.
-    vec3 flux = covered_radiance(triangle, material, point.place) * (PI * sides / (point.density * chosen));
-    return Start(offset_ray_origin(position, normal), direction, dot(normal, direction) > 0.0 ? flux : vec3(0.0), 0.0);
-}
-
 Start start_of(uint photon) {
     vec4 random = sobol_sample(sobol, photon, STREAMS);
     vec4 more = sobol_sample(sobol, photon, STREAMS + 1u);
     float others = 1.0 - push.sky_share;
     float paths = float(push.photon_count);
+    Reach reach = Reach(push.middle, push.radius, FAR_SURFACES != 0u);
     if (random.x >= others) {
-        return start_at_sky(vec4(random.yz, more.xy), push.sky_share * paths);
+        return start_at_sky(reach, push.sky, vec4(random.yz, more.xy), push.sky_share * paths);
     }
     Emitter emitter = pick_emitter(emitters, push.emitter_count, min(random.x / others, 0.99999994));
     if (emitter.is_triangle) {
-        return start_at_triangle(emitter, random.yz, more, others * paths);
+        return start_at_triangle(emitter.number, random.yz, more, others * paths);
     }
-    return start_at_light(emitter, more, emitter.probability * others * paths);
+    return start_at_light(reach, emitter.number, more, emitter.probability * others * paths);
 }
 
 void store(HitVertex vertex, vec3 flux, uint number) {

@@ -4,6 +4,7 @@
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "lib/disc_surface.glsl"
+#include "lib/exact_sum.glsl"
 #include "lib/sobol.glsl"
 #include "final_gather/records.glsl"
 
@@ -44,26 +45,10 @@ const uint HITS = 4u;
 const uint MOST_RAYS = 64u;
 const uint STREAM = 0x9015u;
 
-struct Sum {
-    uvec3 low;
-    uvec3 high;
-    uint count;
-};
-
-void add(inout Sum sum, vec3 flux) {
-    vec3 steps = min(flux * push.steps_a_watt, vec3(1e18));
-    uvec3 high = uvec3(steps * (1.0 / 4294967296.0));
-    uvec3 low = uvec3(steps - vec3(high) * 4294967296.0);
-    uvec3 carry;
-    sum.low = uaddCarry(sum.low, low, carry);
-    sum.high += high + carry;
-    ++sum.count;
-}
-
 Sum photons_around(vec3 position, vec3 normal) {
     float inverse_cell = 0.5 / push.radius;
     ivec3 low = cell_of(position - push.radius, inverse_cell);
-    Sum sum = Sum(uvec3(0u), uvec3(0u), 0u);
+    Sum sum = NO_SUM;
     [[dont_unroll]] for (uint corner = 0u; corner < 8u; ++corner) {
         int bucket = int(bucket_of(low + ivec3(corner & 1u, corner >> 1 & 1u, corner >> 2), push.bits));
         int first = int(texelFetch(starts, bucket).x);
@@ -73,7 +58,7 @@ Sum photons_around(vec3 position, vec3 normal) {
             vec3 offset = uintBitsToFloat(where.xyz) - position;
             if (dot(offset, offset) < push.radius * push.radius && abs(dot(offset, normal)) < 0.25 * push.radius
                 && dot(unpack_direction(where.w), normal) > 0.5) {
-                add(sum, uintBitsToFloat(texelFetch(photons, 2 * place + 1).xyz));
+                add(sum, uintBitsToFloat(texelFetch(photons, 2 * place + 1).xyz) * push.steps_a_watt);
             }
         }
     }
@@ -105,7 +90,7 @@ void main() {
     vec3 normal = unpack_direction(where.w);
     Sum sum = photons_around(position, normal);
     float density = rays_a_hit(position, frame_around(normal), number) / (PI * push.radius * push.radius);
-    vec3 flux = (vec3(sum.high) * 4294967296.0 + vec3(sum.low)) / push.steps_a_watt;
+    vec3 flux = steps_of(sum) / push.steps_a_watt;
     points[own] = MapRecord(where, uvec4(floatBitsToUint(flux * density), number));
     uint home = bucket_of(cell_of(position, 1.0 / push.radius), push.bits_of_points);
     buckets[own] = home;

@@ -5,7 +5,7 @@ use super::options::LightmapsOptions;
 use super::texels::LightTexels;
 use crate::frame::rays::TracedScene;
 use crate::graph::Graph;
-use crate::graph::bindings::BufferRef;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::shaders::lightmaps::{Bounce, BouncePush, Direct, DirectPush};
 
 /// Bounces at most.
@@ -63,9 +63,14 @@ impl Approximated {
         Approximated { direct, bounces }
     }
 
-    /// After all bounces, from nothing.
-    pub(super) fn settled(&self, graph: &mut Graph<'_>, texels: &LightTexels) -> BufferRef<[f32; 4]> {
-        self.bounced(graph, texels, self.direct, self.bounces, None)
+    /// After all bounces, from nothing; `caustics`: what photons bring.
+    pub(super) fn settled(
+        &self,
+        graph: &mut Graph<'_>,
+        texels: &LightTexels,
+        caustics: Option<BufferRef<[f32; 4]>>,
+    ) -> BufferRef<[f32; 4]> {
+        self.bounced(graph, texels, (self.direct, caustics), self.bounces, None)
     }
 
     /// After more bounces of what was there `before`; the last of them may write into a buffer that is there.
@@ -73,7 +78,7 @@ impl Approximated {
         &self,
         graph: &mut Graph<'_>,
         texels: &LightTexels,
-        before: BufferRef<[f32; 4]>,
+        (before, caustics): (BufferRef<[f32; 4]>, Option<BufferRef<[f32; 4]>>),
         bounces: u32,
         last: Option<BufferRef<[f32; 4]>>,
     ) -> BufferRef<[f32; 4]> {
@@ -87,6 +92,8 @@ impl Approximated {
                 direct: self.direct.texels(FLOATS4),
                 links: texels.links.texels(WORDS2),
                 before: light.texels(FLOATS4),
+                has_caustics: u32::from(caustics.is_some()),
+                caustics: caustics.map_or(TexelBuffer::absent(), |caustics| caustics.texels(FLOATS4)),
                 after: after.write(),
                 push: BouncePush { texel_count: texels.map.count, link_count: texels.link_count },
             };

@@ -2,7 +2,7 @@
 //!
 //! 1. Texels on all diffuse surfaces, and links between them: rays traced once (`texels.rs`). They stand while geometry and materials do.
 //! 2. The approximated illumination map (AIM): all light that texels receive, of the lights by shadow rays, of other texels along links (`aim.rs`). It stands while
-//!    lights do.
+//!    lights do. Or by photons (`photons.rs`).
 //! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), all of them, or as many a frame as the options say
 //!    (`renewal.rs`).
 //! 4. Pixels interpolate the IIM (`shade.rs`). That alone follows the camera.
@@ -11,6 +11,7 @@ mod aim;
 mod formats;
 mod iim;
 pub(crate) mod options;
+mod photons;
 mod renewal;
 mod shade;
 #[cfg(test)]
@@ -18,7 +19,7 @@ mod tests;
 mod texels;
 
 use self::aim::Approximated;
-use self::options::{LightmapsOptions, LightmapsSettle};
+use self::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
 use self::texels::LightTexels;
 use crate::graph::bindings::ImageRef;
@@ -44,7 +45,7 @@ impl Method for Lightmaps {
     }
 
     fn shaders(_: &LightmapsOptions, _: bool) -> Vec<&'static str> {
-        vec!["lightmaps/*"]
+        vec!["lightmaps/*", "buckets/*"]
     }
 
     fn skip(options: &LightmapsOptions, facts: &Facts) -> Option<&'static str> {
@@ -66,7 +67,13 @@ impl Method for Lightmaps {
         let light = Approximated::declare(cx.graph, scene, &texels, options);
         let shown = match options.settle {
             LightmapsSettle::Always => {
-                let aim = light.settled(cx.graph, &texels);
+                let aim = match options.source {
+                    LightmapsSource::Rays => {
+                        let caustics = photons::caustics(cx.graph, scene, &texels, options, None);
+                        light.settled(cx.graph, &texels, caustics)
+                    }
+                    LightmapsSource::Photons => photons::aim(cx.graph, scene, &texels, options, None),
+                };
                 iim::all(cx.graph, &texels, aim, options)
             }
             LightmapsSettle::First | LightmapsSettle::Never => renewed(cx.graph, scene, &texels, &light, options),

@@ -14,15 +14,43 @@ choices! {
     }
 }
 
+choices! {
+    /// What the approximated illumination map is made of.
+    LightmapsSource {
+        /// Direct light by shadow rays, bounces along links.
+        Rays = "rays",
+        /// Photons: the paper.
+        Photons = "photons",
+    }
+}
+
+choices! {
+    /// Which photons are sent again where something moves; those of a light that changed are in any case.
+    LightmapsInvalidate {
+        /// Groups of which a path crosses the bounds of what moved.
+        Exact = "exact",
+        /// Groups whose probe, one photon each frame, goes another way: the paper.
+        Probes = "probes",
+    }
+}
+
 options! {
     /// Options of the `lightmaps` diffuse method (Larsen & Christensen 2004).
     LightmapsOptions, "lightmaps":
     /// Side of a texel; 0: by `count`.
     texel: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
     /// Texels on the area of all surfaces; many small surfaces take up to twice as many.
-    count: u32 = 16_000, draft = 5_000, high = 48_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
+    count: u32 = 24_000, draft = 8_000, high = 60_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
     /// Rays that a texel is gathered by.
     rays: u32 = 256, draft = 96, high = 1024; OptionKind::Integer(16, 4096), "rays", "linear";
+    /// What the approximated illumination map is made of.
+    source: LightmapsSource = LightmapsSource::Rays, paper = LightmapsSource::Photons; OptionKind::Choice(LightmapsSource::NAMES), "", "";
+    /// Photons; 0: 20,000 to 200,000 by the number of surfaces.
+    photons: u32 = 0, paper = 3080; OptionKind::Integer(0, 200_000), "photons", "linear";
+    /// Photons that a texel's irradiance is estimated by.
+    nearest: u32 = 100; OptionKind::Integer(1, 10_000), "photons", "";
+    /// Which photons are sent again where something moves.
+    invalidate: LightmapsInvalidate = LightmapsInvalidate::Exact, paper = LightmapsInvalidate::Probes; OptionKind::Choice(LightmapsInvalidate::NAMES), "", "";
     /// Links of each texel, along which light is moved from bounce to bounce before it is gathered.
     links: u32 = 32, draft = 16, high = 64; OptionKind::Integer(4, 256), "links", "linear";
     /// Points of emissive surfaces, and directions that look for these and the sky, by which a texel's direct light is estimated.

@@ -4,7 +4,8 @@
 use super::aim::Approximated;
 use super::formats::{FLOATS4, WORD, WORDS2};
 use super::iim::{Chosen, gather};
-use super::options::{LightmapsOptions, LightmapsSettle};
+use super::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
+use super::photons;
 use super::texels::LightTexels;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
@@ -47,19 +48,27 @@ pub(super) fn renewed(
     light: &Approximated,
     options: &LightmapsOptions,
 ) -> BufferRef<[f32; 4]> {
-    let depends = hash_of(&(texels.map.key, options.rays, options.links, options.samples, options.bounces));
+    let depends =
+        hash_of(&(texels.map.key, options.rays, options.links, options.samples, options.bounces, options.source));
     let content = hash_of(&(depends, scene.key, scene.sky.map(f32::to_bits)));
     let kept = Kept::declare(graph, texels.count(), depends);
     // How long nothing else has changed, and whether that is what all texels were gathered of.
     let (turn, frames) = graph.state_buffer::<u32>("lightmaps.turn", 1, content, Advance::EveryFrame);
     let (whole, wholes) = graph.state_buffer::<u32>("lightmaps.whole", 1, content, Advance::EveryFrame);
     let used_count = texels.map.used.len() as u32;
-    if wholes > 0 || frames >= used_count.div_ceil(options.texels).saturating_add(LAST_FRAMES) {
+    let renewing = used_count.div_ceil(options.texels).max(photons::probing_frames(options));
+    if wholes > 0 || frames >= renewing.saturating_add(LAST_FRAMES) {
         graph.skip("diffuse/lightmaps/renewal", "all texels are renewed");
         return kept.shown;
     }
     let at_once = kept.age == 0 && options.settle == LightmapsSettle::First;
-    let aim = approximated(graph, texels, light, (depends, at_once), options);
+    let aim = match options.source {
+        LightmapsSource::Rays => {
+            let caustics = photons::caustics(graph, scene, texels, options, Some(frames));
+            approximated(graph, texels, (light, caustics), (depends, at_once), options)
+        }
+        LightmapsSource::Photons => photons::aim(graph, scene, texels, options, Some(frames)),
+    };
     let now = graph.buffer::<[f32; 4]>("lightmaps.now", texels.count());
     graph.fill_buffer("diffuse/lightmaps/renewal/clear-now", now, 0);
     let listed = choose(graph, texels, (aim, &kept, now), options.texels);
@@ -96,17 +105,17 @@ pub(super) fn renewed(
 fn approximated(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    light: &Approximated,
+    (light, caustics): (&Approximated, Option<BufferRef<[f32; 4]>>),
     (depends, at_once): (u64, bool),
     options: &LightmapsOptions,
 ) -> BufferRef<[f32; 4]> {
     if options.bounces.is_some() {
-        return light.settled(graph, texels);
+        return light.settled(graph, texels, caustics);
     }
     let kept = graph.history_buffer::<[f32; 4]>("lightmaps.aim", texels.count(), depends, Advance::EveryFrame);
     // From nothing the first bounce brings what comes of the lights.
     let bounces = if at_once || kept.age == 0 { light.bounces + 1 } else { BOUNCES };
-    let aim = light.bounced(graph, texels, kept.last, bounces, Some(kept.next));
+    let aim = light.bounced(graph, texels, (kept.last, caustics), bounces, Some(kept.next));
     graph.want_buffer(aim);
     aim
 }

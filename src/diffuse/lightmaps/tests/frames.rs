@@ -10,7 +10,7 @@ use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Renderer, Slot, Timing};
 use crate::scene::{CameraView, LightId, LightKind, Scene};
 
-fn asked(camera: &CameraView) -> FrameRequest {
+pub(super) fn asked(camera: &CameraView) -> FrameRequest {
     FrameRequest { timing: Timing::Passes, ..request([32, 24], camera.clone(), &[Slot::Diffuse]) }
 }
 
@@ -19,7 +19,7 @@ fn ran(frame: &Frame) -> Vec<String> {
 }
 
 /// How many texels the frame gathered.
-fn renewed(frame: &Frame) -> u64 {
+pub(super) fn renewed(frame: &Frame) -> u64 {
     let passes = frame.timings.passes.iter().filter(|row| row.full_name() == "diffuse/lightmaps/iim/gather.0");
     passes.filter_map(|row| row.work.get("texels")).sum()
 }
@@ -29,7 +29,7 @@ fn pixels(frame: &Frame) -> &[[f32; 3]] {
 }
 
 /// The mean difference of two pictures, over the mean of the second.
-fn difference(found: &Frame, expected: &Frame) -> f64 {
+pub(super) fn difference(found: &Frame, expected: &Frame) -> f64 {
     let values = || {
         let all = pixels(found).iter().flatten().zip(pixels(expected).iter().flatten());
         all.map(|(a, b)| (f64::from(*a), f64::from(*b)))
@@ -37,18 +37,18 @@ fn difference(found: &Frame, expected: &Frame) -> f64 {
     values().map(|(a, b)| (a - b).abs()).sum::<f64>() / values().map(|(_, b)| b).sum::<f64>()
 }
 
-fn scale_light(scene: &mut Scene, light: usize, by: f32) {
+pub(super) fn scale_light(scene: &mut Scene, light: usize, by: f32) {
     let mut changed = scene.lights()[light].clone();
     changed.intensity = changed.intensity.map(|channel| by * channel);
     scene.set_light(LightId(light), changed).expect("a sound light");
 }
 
-fn frame(renderer: &mut Renderer, scene: &Scene, camera: &CameraView) -> Frame {
+pub(super) fn frame(renderer: &mut Renderer, scene: &Scene, camera: &CameraView) -> Frame {
     renderer.render(scene, &asked(camera)).expect("a frame")
 }
 
 /// Frames until nothing is done any more.
-fn until_still(renderer: &mut Renderer, scene: &Scene, camera: &CameraView) -> (u32, Frame) {
+pub(super) fn until_still(renderer: &mut Renderer, scene: &Scene, camera: &CameraView) -> (u32, Frame) {
     for number in 0..200 {
         let made = frame(renderer, scene, camera);
         if ran(&made).is_empty() {

@@ -1,6 +1,7 @@
 //! Light maps against closed forms and paths, and what stands when something changes.
 
 mod frames;
+mod photons;
 
 use glam::{DAffine3, DVec3};
 
@@ -10,7 +11,7 @@ use crate::gpu_tests::scenes::{add_light, box_faces, builtin, closed_box, floor,
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
 use crate::renderer::{DiffuseMethod, Settings, Slot, Technique};
-use crate::scene::{CameraView, LightKind, Material, Scene};
+use crate::scene::{CameraView, LightKind, Material, NodeId, Scene};
 
 /// Few and coarse texels.
 fn options() -> LightmapsOptions {
@@ -59,6 +60,26 @@ fn with_camera(name: &str) -> (Scene, CameraView) {
     (scene, camera)
 }
 
+/// One closed room that a wall of 5 mm, which reaches into its walls, parts into two: floor, ceiling and two walls go on under and behind it. A light in one of them.
+fn parted_room(scale: f64, light: f32) -> Scene {
+    let mut scene = closed_box(1.0, lambert([0.6, 0.5, 0.7]));
+    let wall = scene.add_material(lambert([0.5; 3])).expect("a sound material");
+    let mut faces = box_faces([0.0025, 1.05, 1.05], [wall; 6]);
+    faces.iter_mut().for_each(|face| face.indices.reverse());
+    place(&mut scene, faces, DAffine3::IDENTITY);
+    for node in 0..scene.nodes().len() {
+        scene.set_local_transform(NodeId(node), DAffine3::from_scale(DVec3::splat(scale))).expect("sound");
+    }
+    let intensity = light * (scale * scale) as f32;
+    add_light(&mut scene, LightKind::Point, DVec3::new(0.4, 0.3, -0.2) * scale, DVec3::NEG_Y, [intensity; 3]);
+    scene
+}
+
+/// A look into the lit half of it, and into the dark one.
+fn into_parted_room(scale: f64) -> [CameraView; 2] {
+    [1.0, -1.0].map(|side| view(DVec3::new(0.9 * side, 0.5, 0.9) * scale, DVec3::new(0.0, -0.6, -0.3) * scale))
+}
+
 /// In a closed box of albedo ρ that emits L_e everywhere, radiance is L_e/(1 − ρ): of it ρ²·L_e/(1 − ρ) was scattered twice or more often, at every point.
 #[test]
 fn a_furnace_is_even() {
@@ -85,6 +106,7 @@ fn pictures_are_those_of_paths() {
         ("lamp", lamp_box(), None),
         ("sky", open_room(), None),
         ("sun", sunlit_corner(), None),
+        ("ring", with_camera("ring"), None),
     ];
     for (name, (scene, camera), bounces) in cases {
         let settings = settings(LightmapsOptions { bounces, ..options() });
@@ -101,24 +123,36 @@ fn light_stays_out_of_dark_rooms() {
     assert!(found.iter().all(|&share| share < 1e-3), "{found:?} of the lit hall's light");
 }
 
+/// One floor under two rooms: what of the lit one's light comes into the dark one.
+pub(super) fn leak_of_a_parted_room(session: &Session, settings: &Settings) -> f64 {
+    let scene = parted_room(1.0, 1.0);
+    let [lit, dark] = into_parted_room(1.0).map(|camera| {
+        let frame = session.render(&scene, settings, &request([48, 32], camera, &[Slot::Diffuse]));
+        frame.slots[&Slot::Diffuse].pixels.iter().flatten().map(|&value| f64::from(value)).sum::<f64>()
+    });
+    assert!(lit > 0.0);
+    dark / lit
+}
+
+#[test]
+fn one_floor_under_two_rooms_does_not_leak() {
+    let found = leak_of_a_parted_room(&Session::open(), &settings(options()));
+    println!("{found:.1e} of the lit half's light");
+    assert!(found < 1e-3, "{found}");
+}
+
 /// Neither the unit of length nor that of light matters.
 #[test]
 fn units_do_not_matter() {
     let session = Session::open();
     let picture = |scale: f64, light: f32| {
-        let mut scene = closed_box(1.0, lambert([0.6, 0.5, 0.7]));
-        let node = scene.nodes().len() - 1;
-        scene
-            .set_local_transform(crate::scene::NodeId(node), DAffine3::from_scale(DVec3::splat(scale)))
-            .expect("sound");
-        let intensity = light * (scale * scale) as f32;
-        add_light(&mut scene, LightKind::Point, DVec3::new(0.1, 0.3, -0.2) * scale, DVec3::NEG_Y, [intensity; 3]);
-        let camera = view(DVec3::new(0.7, 0.6, 0.8) * scale, DVec3::ZERO);
+        let [camera, _] = into_parted_room(scale);
+        let scene = parted_room(scale, light);
         let frame = session.render(&scene, &settings(options()), &request([24, 16], camera, &[Slot::Diffuse]));
         frame.slots[&Slot::Diffuse].pixels.clone()
     };
     let expected = picture(1.0, 1.0);
-    for (scale, light, within) in [(1.0, 1024.0_f32, 1e-6), (64.0, 1.0, 1e-3), (1.0 / 64.0, 1.0, 1e-3)] {
+    for (scale, light, within) in [(1.0, 1024.0_f32, 1e-6), (64.0, 1.0, 1e-3), (0.25, 1.0, 1e-3)] {
         for (found, expected) in picture(scale, light).iter().flatten().zip(expected.iter().flatten()) {
             assert!(
                 (found - light * expected).abs() <= within * light * expected,

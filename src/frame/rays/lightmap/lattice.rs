@@ -13,6 +13,10 @@ const LEAST: f64 = 0.35;
 /// Nodes farther from all triangles, in texels, are in no cell that shows some of the surface.
 const FARTHEST: f64 = 1.5;
 
+/// Parts of a triangle on a texel's area, and along its edges at most.
+const PARTS: f64 = 16.0;
+const MOST_PARTS: f64 = 2048.0;
+
 /// Cells along both axes, and their sizes.
 #[derive(Clone, Copy)]
 pub(super) struct Lattice {
@@ -63,6 +67,35 @@ impl Lattice {
     pub(super) fn coordinates(&self, chart: &Chart, triangle: &TracedTriangle) -> [[f32; 2]; 3] {
         self.corners(chart, triangle)
             .map(|corner| [0, 1].map(|axis| if self.cells[axis] == 0 { 0.0 } else { corner[axis] as f32 }))
+    }
+
+    /// How much of the surface is nearest to each node, m²: small equal parts of each triangle go to the nodes that their middles are nearest to.
+    pub(super) fn areas(&self, chart: &Chart, all: &[TracedTriangle]) -> Vec<f32> {
+        let [width, height] = self.size();
+        let mut areas = vec![0.0; (width * height) as usize];
+        let cell = self.step.element_product();
+        for &number in &chart.triangles {
+            let triangle = &all[number as usize];
+            let coordinates = self.coordinates(chart, triangle);
+            let [a, b, c] = coordinates.map(|[x, y]| DVec2::new(f64::from(x), f64::from(y)));
+            let parts = (PARTS * triangle.area() / cell).sqrt().ceil().clamp(2.0, MOST_PARTS) as u32;
+            let area = triangle.area() / f64::from(parts * parts);
+            let mut take = |row: u32, column: u32, third: f64| {
+                let place = (DVec2::new(f64::from(column), f64::from(row)) + third) / f64::from(parts);
+                let at = a + (b - a) * place.x + (c - a) * place.y;
+                let index = |axis: usize, count: u32| ((at[axis] + 0.5).max(0.0) as u32).min(count - 1);
+                areas[(index(1, height) * width + index(0, width)) as usize] += area;
+            };
+            for row in 0..parts {
+                for column in 0..parts - row {
+                    take(row, column, 1.0 / 3.0);
+                    if column + row + 1 < parts {
+                        take(row, column, 2.0 / 3.0);
+                    }
+                }
+            }
+        }
+        areas.into_iter().map(|area| area as f32).collect()
     }
 
     /// The nodes, row by row; `None` where no cell around shows any of the surface.

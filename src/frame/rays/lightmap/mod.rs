@@ -14,7 +14,7 @@ use self::charts::{Chart, charts};
 use self::lattice::Lattice;
 use super::motion::Part;
 use super::triangles::TracedTriangle;
-use super::uploaded::WORDS;
+use super::uploaded::{FLOAT, WORDS};
 use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::graph::{Dependence, Graph, hash_of};
 
@@ -36,6 +36,8 @@ pub(crate) struct Lightmap {
     pub(crate) used: Vec<u32>,
     records: Arc<[u8]>,
     places: Arc<[u8]>,
+    /// How much of its surface is nearest to each texel, m².
+    areas: Vec<f32>,
     /// Names all of it.
     pub(crate) key: u64,
 }
@@ -103,11 +105,13 @@ impl Lightmap {
         let texels = sizes(&charts, triangles, texels);
         let lattices: Vec<Lattice> =
             charts.iter().zip(&texels).map(|(chart, texel)| Lattice::of(chart, *texel)).collect();
+        let areas: Vec<Vec<f32>> =
+            charts.par_iter().zip(&lattices).map(|(chart, lattice)| lattice.areas(chart, triangles)).collect();
         let nodes: Vec<_> =
             charts.par_iter().zip(&lattices).map(|(chart, lattice)| lattice.nodes(chart, triangles)).collect();
         let mut records = vec![[0, 0, 0, 0, 0, 0, NONE, NONE, 0, 0, 0, 0]; triangles.len()];
         let mut places: Vec<[u32; 4]> = Vec::new();
-        let mut used = Vec::new();
+        let (mut used, mut texel_areas) = (Vec::new(), Vec::new());
         for (number, ((chart, lattice), nodes)) in (0..).zip(charts.iter().zip(&lattices).zip(&nodes)) {
             let firsts = [0, 1].map(|side| match side < chart.sides {
                 true => places.len() as u32 + side * nodes.len() as u32,
@@ -121,6 +125,7 @@ impl Lightmap {
                     [a[0], a[1], b[0], b[1], c[0], c[1], firsts[0], firsts[1], width, height, texel, number];
             }
             for side in 0..chart.sides {
+                texel_areas.extend(&areas[number as usize]);
                 for node in nodes {
                     if node.is_some() {
                         used.push(places.len() as u32);
@@ -140,6 +145,7 @@ impl Lightmap {
             count: (places.len() / 16 - 1) as u32,
             surface_count: charts.len() as u32,
             used,
+            areas: texel_areas,
             key: hash_of(&("lightmap", &records, &places)),
             records,
             places,
@@ -156,6 +162,11 @@ impl Lightmap {
     pub(crate) fn places(&self, graph: &mut Graph<'_>) -> TexelBuffer {
         let places = self.places.clone();
         graph.upload_shared::<u32>("traced.lightmap_places", places, self.key, Dependence::GEOMETRY).texels(WORDS)
+    }
+
+    /// How much of its surface is nearest to each texel, m².
+    pub(crate) fn areas(&self, graph: &mut Graph<'_>) -> TexelBuffer {
+        graph.upload("traced.lightmap_areas", &self.areas, Dependence::GEOMETRY).texels(FLOAT)
     }
 
     /// The texels that are read.

@@ -57,6 +57,22 @@ fn a_rectangle_is_covered_from_border_to_border() {
     }
 }
 
+/// Of a triangle whose rectangle is half empty, and of a rectangle: areas add up, and inner texels have that of a cell.
+#[test]
+fn areas_are_those_of_the_surface() {
+    let all = [floor(2.0, 1.0).to_vec(), floor(1.0, 1.0)[..1].to_vec()];
+    for (all, expected) in all.iter().zip([2.0_f32, 0.5]) {
+        let chart = &charts(all, 0..all.len(), |_| 1)[0];
+        let lattice = Lattice::of(chart, 0.25);
+        let areas = lattice.areas(chart, all);
+        let sum: f32 = areas.iter().sum();
+        assert!((sum / expected - 1.0).abs() < 1e-4, "{sum}");
+        let cell = 0.25 * 0.25;
+        let largest = areas.iter().copied().fold(0.0, f32::max);
+        assert!((largest / cell - 1.0).abs() < 0.2, "{largest} {cell}");
+    }
+}
+
 #[test]
 fn what_is_smaller_than_a_texel_has_one() {
     let all = floor(0.02, 0.01);

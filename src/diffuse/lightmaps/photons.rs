@@ -1,0 +1,256 @@
+//! The approximated illumination map by photons whose paths are kept: those are sent again whose way changed, group by group.
+
+use super::formats::{FLOATS4, WORD, WORDS4};
+use super::options::{LightmapsInvalidate, LightmapsOptions};
+use super::texels::LightTexels;
+use crate::frame::rays::TracedScene;
+use crate::graph::bindings::{BufferRef, ReadWriteBuffer, TexelBuffer};
+use crate::graph::kept::Advance;
+use crate::graph::{Dependence, Graph, hash_of};
+use crate::shaders::buckets::{Starts, StartsPush};
+use crate::shaders::groups::Lobes;
+use crate::shaders::lightmaps::{
+    Crossed, CrossedPush, Estimate, EstimatePush, Landed, LandedPush, Send, SendPush, Stale, StalePush,
+};
+
+/// As in glsl/lightmaps/photons.glsl.
+const GROUP: u32 = 40;
+const RECORDS: u32 = 16;
+/// Photons by the number of surfaces, at least and at most.
+const A_SURFACE: u32 = 512;
+const LEAST: u32 = 20_000;
+const MOST: u32 = 200_000;
+/// Steps of a sum that the mean photon has.
+const STEPS: f64 = 1_048_576.0;
+/// Points of a path that are nearer to each other are the same, over the scene's radius.
+const SLACK: f64 = 1e-4;
+
+/// What is kept of photons.
+struct Kept {
+    records: BufferRef<[u32; 4]>,
+    /// What light each group was sent from.
+    keys: BufferRef<u32>,
+    received: BufferRef<[f32; 4]>,
+    age: u32,
+}
+
+impl Kept {
+    fn declare(graph: &mut Graph<'_>, counts: [usize; 3], depends: Option<u64>) -> Kept {
+        let [records, keys, received] = counts;
+        if let Some(depends) = depends {
+            let advance = Advance::EveryFrame;
+            let (records, age) = graph.state_buffer("lightmaps.photons", records, depends, advance);
+            let (keys, _) = graph.state_buffer("lightmaps.photon_keys", keys, depends, advance);
+            let (received, _) = graph.state_buffer("lightmaps.photon_map", received, depends, advance);
+            return Kept { records, keys, received, age };
+        }
+        let records = graph.buffer("lightmaps.sent", records);
+        let keys = graph.buffer("lightmaps.sent_keys", keys);
+        let received = graph.buffer("lightmaps.estimated", received);
+        graph.fill_buffer("diffuse/lightmaps/photons/clear-paths", records, 0);
+        graph.fill_buffer("diffuse/lightmaps/photons/clear-keys", keys, 0);
+        graph.fill_buffer("diffuse/lightmaps/photons/clear-map", received, 0);
+        Kept { records, keys, received, age: 0 }
+    }
+}
+
+/// How many frames probes take to go through a group.
+pub(super) fn probing_frames(options: &LightmapsOptions) -> u32 {
+    if options.invalidate == LightmapsInvalidate::Probes { GROUP } else { 0 }
+}
+
+/// Which light photons bring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Brought {
+    All,
+    /// That of punctual lights by specular lobes alone.
+    Caustics,
+}
+
+/// The caustics of punctual lights, which rays from texels do not find; none where nothing is specular.
+pub(super) fn caustics(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    texels: &LightTexels,
+    options: &LightmapsOptions,
+    frames: Option<u32>,
+) -> Option<BufferRef<[f32; 4]>> {
+    let reason = match (scene.facts.specular, scene.punctual_count, options.bounces) {
+        (false, ..) => "no specular surface",
+        (_, 0, _) => "no punctual light",
+        (.., Some(1)) => "reflections are more bounces than asked for",
+        _ => return Some(received(graph, scene, texels, options, (Brought::Caustics, frames))),
+    };
+    graph.skip("diffuse/lightmaps/photons", reason);
+    None
+}
+
+/// All light, as photons bring it; `frames`: since something changed, where paths are kept over frames.
+pub(super) fn aim(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    texels: &LightTexels,
+    options: &LightmapsOptions,
+    frames: Option<u32>,
+) -> BufferRef<[f32; 4]> {
+    received(graph, scene, texels, options, (Brought::All, frames))
+}
+
+fn received(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    texels: &LightTexels,
+    options: &LightmapsOptions,
+    (brought, frames): (Brought, Option<u32>),
+) -> BufferRef<[f32; 4]> {
+    let sky = scene.sky.iter().any(|&channel| channel > 0.0);
+    let lights = match brought {
+        Brought::All => scene.punctual_count + u32::from(scene.emissive_count > 0) + u32::from(sky),
+        Brought::Caustics => scene.punctual_count,
+    };
+    let by_surfaces = texels.map.surface_count.saturating_mul(A_SURFACE).clamp(LEAST, MOST);
+    let wanted = if options.photons > 0 { options.photons } else { by_surfaces };
+    let groups_a_light = (wanted / (GROUP * lights.max(1))).max(1);
+    let group_count = groups_a_light * lights;
+    let photon_count = group_count * GROUP;
+    let sides = 2 * texels.map.surface_count;
+    let what = (group_count, options.bounces, options.nearest, scene.radius.to_bits(), brought);
+    let depends = frames.map(|_| hash_of(&(texels.map.key, scene.emission_key(), what)));
+    let counts = [(2 * RECORDS * photon_count) as usize, group_count as usize, texels.count()];
+    let kept = Kept::declare(graph, counts, depends);
+
+    let stale = graph.buffer::<u32>("lightmaps.stale", group_count as usize);
+    let pass = Stale {
+        scene_lights: scene.lights(graph),
+        stale: stale.write(),
+        keys: kept.keys.read_write(),
+        push: StalePush {
+            group_count,
+            groups_a_light,
+            light_count: scene.punctual_count,
+            others_key: hash_of(&(scene.emission_key(), scene.sky.map(f32::to_bits))) as u32,
+            all: u32::from(kept.age == 0),
+        },
+    };
+    graph.pass("diffuse/lightmaps/photons/stale", pass).threads([group_count, 1, 1]);
+    let boxes = crossing(graph, scene, (&kept, stale), photon_count, options, frames);
+
+    let touched = graph.buffer::<u32>("lightmaps.touched", sides as usize + 2);
+    graph.fill_buffer("diffuse/lightmaps/photons/clear", touched, 0);
+    let facts = &scene.facts;
+    let mut send = |probes: u32, probe: u32| {
+        let pass = Send {
+            probes,
+            caustics: u32::from(brought == Brought::Caustics),
+            far_surfaces: u32::from(scene.far_surfaces),
+            scene_rays: texels.rays.clone(),
+            scene_lights: scene.lights(graph),
+            lightmap: texels.group.clone(),
+            lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
+            records: kept.records.read_write(),
+            stale: stale.read_write(),
+            touched: touched.read_write(),
+            push: SendPush {
+                group_count,
+                groups_a_light,
+                light_count: scene.punctual_count,
+                emitter_count: scene.emissive_count,
+                density_scale: scene.emissive_density_scale,
+                bounces: options.bounces.unwrap_or(u32::MAX),
+                probe,
+                surface_count: sides,
+                sky: scene.sky,
+                radius: scene.radius as f32,
+                middle: scene.middle_rs.as_vec3().to_array(),
+                slack: (SLACK * scene.radius) as f32,
+            },
+        };
+        let (name, count) = if probes == 1 { ("probe", group_count) } else { ("send", photon_count) };
+        let pass = graph.pass(&format!("diffuse/lightmaps/photons/{name}"), pass);
+        let pass = pass.count("sent", touched, sides as usize).count("rays", touched, sides as usize + 1);
+        pass.threads([count, 1, 1]);
+    };
+    if let Some(frames) = frames.filter(|_| kept.age > 0 && boxes == 0 && probing_frames(options) > 0) {
+        send(1, frames % GROUP);
+    }
+    send(0, 0);
+    // The nearest ones of what is bright on a small part of a surface alone spread it far over the rest: caustics stay in their texels.
+    let nearest = if brought == Brought::All { options.nearest } else { 0 };
+    estimate(graph, scene, texels, (&kept, touched), (photon_count, nearest));
+    kept.received
+}
+
+/// Finds the groups whose paths cross what moved; returns how many boxes that is about.
+fn crossing(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    (kept, stale): (&Kept, BufferRef<u32>),
+    photon_count: u32,
+    options: &LightmapsOptions,
+    frames: Option<u32>,
+) -> usize {
+    let moved = scene.motion.as_ref().filter(|_| kept.age > 0 && frames == Some(0));
+    let Some(motion) = moved.filter(|_| options.invalidate == LightmapsInvalidate::Exact) else { return 0 };
+    let corners = motion.before.iter().chain(&motion.after).flatten();
+    let corners: Vec<[f32; 4]> = corners.map(|corner| corner.extend(0.0).to_array()).collect();
+    let boxes = graph.upload("lightmaps.moved_boxes", &corners, Dependence::GEOMETRY);
+    let box_count = (corners.len() / 2) as u32;
+    let pass = Crossed {
+        records: kept.records.texels(WORDS4),
+        boxes: boxes.texels(FLOATS4),
+        stale: stale.read_write(),
+        push: CrossedPush { photon_count, box_count },
+    };
+    graph.pass("diffuse/lightmaps/photons/crossed", pass).threads([photon_count, 1, 1]);
+    box_count as usize
+}
+
+/// Estimates what texels receive of the photons on their surfaces, where these changed.
+fn estimate(
+    graph: &mut Graph<'_>,
+    scene: &TracedScene,
+    texels: &LightTexels,
+    (kept, touched): (&Kept, BufferRef<u32>),
+    (photon_count, nearest): (u32, u32),
+) {
+    let bucket_count = texels.map.count;
+    let counts = graph.buffer::<u32>("lightmaps.hit_counts", bucket_count as usize);
+    graph.fill_buffer("diffuse/lightmaps/photons/clear-counts", counts, 0);
+    let landed = |lists: u32, starts: TexelBuffer, counts: BufferRef<u32>, hits: ReadWriteBuffer<[u32; 4]>| Landed {
+        lists,
+        records: kept.records.texels(WORDS4),
+        starts,
+        counts: counts.read_write(),
+        hits,
+        push: LandedPush { photon_count },
+    };
+    let pass = landed(0, TexelBuffer::absent(), counts, ReadWriteBuffer::absent());
+    graph.pass("diffuse/lightmaps/photons/count", pass).threads([photon_count, 1, 1]);
+    let starts = graph.buffer::<u32>("lightmaps.hit_starts", bucket_count as usize + 1);
+    let push = StartsPush { bucket_count };
+    let pass = Starts { counts: counts.texels(WORD), starts: starts.write(), push };
+    graph.pass("diffuse/lightmaps/photons/starts", pass).groups([1, 1, 1]);
+    let listed = graph.buffer::<u32>("lightmaps.hit_lengths", bucket_count as usize);
+    graph.fill_buffer("diffuse/lightmaps/photons/clear-lists", listed, 0);
+    let hits = graph.buffer::<[u32; 4]>("lightmaps.hits", (2 * (RECORDS - 1) * photon_count) as usize);
+    let pass = landed(1, starts.texels(WORD), listed, hits.start_then_read());
+    graph.pass("diffuse/lightmaps/photons/list", pass).unordered().threads([photon_count, 1, 1]);
+    let sky = scene.sky.iter().map(|&channel| f64::from(channel)).fold(0.0, f64::max);
+    let sky_power = 4.0 * (std::f64::consts::PI * scene.radius).powi(2) * sky;
+    let power = (scene.power + sky_power).max(1e-30);
+    let pass = Estimate {
+        scene_rays: texels.rays.clone(),
+        lightmap: texels.group.clone(),
+        starts: starts.texels(WORD),
+        hits: hits.texels(WORDS4),
+        touched: touched.texels(WORD),
+        areas: texels.map.areas(graph),
+        received: kept.received.read_write(),
+        push: EstimatePush {
+            texel_count: texels.map.count,
+            nearest,
+            steps_a_watt: (STEPS * f64::from(photon_count) / power) as f32,
+        },
+    };
+    graph.pass("diffuse/lightmaps/photons/estimate", pass).threads(texels.threads());
+}
