@@ -5,7 +5,7 @@
 #include "lib/vpl.glsl"
 
 // One invocation for each slot with which a group of lights begins makes these lights of their slots, as caches/reduce.comp makes slots of texels: flux and areas are sums, position
-// and the normal a mean by flux, the position that of the slot nearest to the mean, so that no light gets through a wall; and finds the sphere around them (caches/gather_groups.comp).
+// and the normal a mean by flux; the position too where all slots lie in a plane, else that of the slot nearest to the mean, so that no light gets through a wall; and finds the sphere around them (caches/gather_groups.comp).
 
 layout(local_size_x = 64) in;
 
@@ -23,6 +23,9 @@ layout(push_constant, scalar) uniform Push {
 Vpl slot_light(uint slot) {
     return unpack_vpl(texelFetch(slots, int(2u * slot)), texelFetch(slots, int(2u * slot + 1u)));
 }
+
+// Slots lie in a plane if they are less high over it than this share of the root of their area.
+const float FLAT = 0.02;
 
 // The light of the slots from `first` to before `end`.
 void merge(uint first, uint end, out vec4 texel, out vec4 strength) {
@@ -58,7 +61,13 @@ void merge(uint first, uint end, out vec4 texel, out vec4 strength) {
             place = light.position_rs;
         }
     }
-    texel = pack_vpl_position(place, area);
+    float highest = 0.0;
+    for (uint slot = first; slot < end; ++slot) {
+        Vpl light = slot_light(slot);
+        highest = luminance(light.strength) > 0.0 ? max(highest, abs(dot(plane, light.position_rs - place))) : highest;
+    }
+    bool flat_block = highest < FLAT * sqrt(area);
+    texel = pack_vpl_position(flat_block ? mean + dot(plane, place - mean) * plane : place, area);
     strength = pack_vpl_strength(flux, normalize_or(normals, plane));
 }
 

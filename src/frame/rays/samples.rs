@@ -1,6 +1,6 @@
 //! Points spread evenly over all diffuse surface, in clusters of neighbours that face about the same way (glsl/bounces/samples.glsl).
 //!
-//! Point i of n lies where the areas of the triangles, one after the other and each times the density there, add up to (i + ½)/n of all, and within a triangle on the points of the R₂ sequence
+//! Point i of n lies where the areas of the triangles, one after the other and each times the density there, add up to (i + s)/n of all, 0 < s < 1, and within a triangle on the points of the R₂ sequence
 //! (Roberts 2018). Clusters come of halving along the longest side of the box around what is left, among points whose normals have the same largest
 //! component and which stand for about as much area: those of a room's floor and of the ground outside are not of one cluster.
 
@@ -13,6 +13,9 @@ use super::triangles::TracedTriangle;
 use crate::frame::octahedral::pack_direction;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph, hash_of};
+
+/// Where the first sample lies, in steps: with a half many would lie just where triangles end, and rounding decide which one they are on.
+const START: f64 = 0.381_966_011_250_105;
 
 /// Samples of a scene's surfaces, on the host.
 pub(crate) struct SurfaceSamples {
@@ -96,7 +99,7 @@ fn spread(
         for &side in sides {
             let end = before + area * density / sides.len() as f64;
             let first = samples.len();
-            while samples.len() < count as usize && (samples.len() as f64 + 0.5) * step < end {
+            while samples.len() < count as usize && (samples.len() as f64 + START) * step < end {
                 let place = r2(triangle, side, samples.len() - first);
                 let sample = sample_of(&triangles[triangle], triangle, (samples.len() as u32, side, place));
                 samples.push(Sample { area: (step / density) as f32, ..sample });
