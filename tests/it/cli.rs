@@ -315,7 +315,7 @@ fn a_failing_scene_does_not_stop_the_bench() {
     assert!(!report.device.name.is_empty());
     assert_eq!(report.failures.len(), 1);
     let techniques: Vec<&str> = report.runs.iter().map(|run| run.technique.as_str()).collect();
-    assert_eq!(techniques, ["direct", "rsm", "hybrid", "volumes", "particles", "path", "sppm"]);
+    assert_eq!(techniques, ["direct", "rsm", "hybrid", "volumes", "particles", "lightmaps", "path", "sppm"]);
     for run in &report.runs {
         assert_eq!((run.frames, run.size), (2, [48, 32]));
         assert!(

@@ -367,7 +367,7 @@ mod tests {
         assert_says(&format!("{scenes}{SERIES}vari = {{}}"), &["dir/x.toml", "series \"a\"", "vari", "vary"]);
         assert_says(
             &format!("{scenes}[[series]]\nname = \"a\"\ntechnique = \"rms\""),
-            &["series \"a\"", "rms", "direct, rsm, hybrid, volumes, particles, path"],
+            &["series \"a\"", "rms", "direct, rsm, hybrid, volumes, particles, lightmaps, path"],
         );
         assert_says(&format!("{scenes}{SERIES}preset = [\"fast\"]"), &["series \"a\"", "fast", "draft, default"]);
         assert_says(&format!("{scenes}{SERIES}preset = 3"), &["series \"a\"", "a name or a list"]);
