@@ -1,6 +1,6 @@
 //! irradia: a headless Vulkan engine for global illumination.
 //!
-//! [`renderer`] makes frames of a [`scene`]; [`metrics`] says how far they are from a [`reference`]. Features: `cli` (the program), `plots` (the module `bench`), `flip` (FLIP among the
+//! [`renderer`] makes frames of a [`scene`]; [`metrics`] says how far they are from a [`mod@reference`]. Features: `cli` (the program), `plots` (the module `bench`), `flip` (FLIP among the
 //! errors; compiles C++), all on by default, and `capi` (the C interface).
 
 #[cfg(feature = "plots")]
