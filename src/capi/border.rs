@@ -97,6 +97,11 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
+/// This thread works for calls alone.
+pub(super) fn stay_inside() {
+    INSIDE.set(true);
+}
+
 /// Panics inside of a call are told by its status; the standard hook would write to the terminal.
 fn keep_panics_quiet() {
     static ONCE: Once = Once::new();

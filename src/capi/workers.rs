@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use tracing::Dispatch;
 
+use super::border::stay_inside;
 use super::status::{Fault, IRRADIA_ERROR_INTERNAL};
 
 /// A pool, and where it says what happens.
@@ -22,7 +23,10 @@ impl Workers {
         let pool = ThreadPoolBuilder::new().spawn_handler(move |thread| {
             let log = heard.clone();
             let name = format!("irradia-{}", thread.index());
-            let run = move || tracing::dispatcher::with_default(&log, || thread.run());
+            let run = move || {
+                stay_inside();
+                tracing::dispatcher::with_default(&log, || thread.run());
+            };
             let handle = std::thread::Builder::new().name(name).spawn(run)?;
             started.lock().unwrap_or_else(PoisonError::into_inner).push(handle);
             Ok(())
@@ -57,5 +61,21 @@ impl Drop for Workers {
             // What a thread threw was told by the call that it worked for.
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::border::call;
+    use super::*;
+
+    #[test]
+    fn a_panic_of_a_worker_is_a_status_too() {
+        let status = call(|_| {
+            let workers = Workers::new(Dispatch::none())?;
+            workers.run(|| panic!("far away"));
+            Ok(())
+        });
+        assert_eq!(status, IRRADIA_ERROR_INTERNAL);
     }
 }

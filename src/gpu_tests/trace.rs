@@ -238,7 +238,7 @@ fn mirrors_show_the_diffuse_light_that_methods_offer() {
     assert_close("final-gather", &pixels(&frame, Slot::Specular), &specular, 0.02, 0.05);
     assert!(traced(Technique::Particles).reduced().is_empty() && hybrid.reduced().is_empty());
     let direct = traced(Technique::Direct);
-    assert!(direct.reduced()[0].contains("final-gather, particles, volumes, vpl"), "{:?}", direct.reduced());
+    assert!(direct.reduced()[0].contains("final-gather, lightmaps, particles, volumes, vpl"), "{:?}", direct.reduced());
     let alone = slots(&session, &scene, &direct, &camera);
     let share = mean(&pixels(&alone, Slot::Specular)) / mean(&specular);
     assert!(share.max_element() < 0.9, "direct light alone: {share}");

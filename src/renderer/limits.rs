@@ -155,7 +155,7 @@ mod tests {
             names.dedup();
             names
         };
-        assert_eq!(methods(&poor), ["particles", "photons", "path", "sppm"]);
+        assert_eq!(methods(&poor), ["particles", "photons", "points", "path", "sppm"]);
         let (piece, what) = first_lack(&poor, &of(Technique::Hybrid, &[]), true).expect("it lacks buffers");
         assert_eq!(piece, "photons");
         assert!(what.contains("storage buffers in a stage (4 are offered)"), "{what}");
