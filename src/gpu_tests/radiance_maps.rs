@@ -383,3 +383,22 @@ fn paths_leave_out_what_is_specular_on_the_way() {
     let [none, all] = means(&facing, &camera);
     assert!(none < 0.8 * all && none > 0.0, "a metal wall faces it: {none} of {all}");
 }
+
+/// Both slots have lists of lights of their own where lamps or the sky shine: a frame has both, at every preset that makes them so.
+#[test]
+fn frames_have_both_slots_whatever_lists_they_light_by() {
+    let session = Session::open();
+    for sky in [0.0, 0.2] {
+        let mut scene = builtin("cornell-glossy");
+        scene.set_sky([sky; 3]);
+        let camera = scene.camera_view(None).expect("its camera");
+        for changes in [&[("volumes.spread", "views")][..], &[("volumes.bounces", "3"), ("volumes.samples", "256")]] {
+            let asked = request([32, 24], camera.clone(), &[Slot::Diffuse, Slot::Specular]);
+            let frame = session.render(&scene, &set(changes), &asked);
+            for slot in [Slot::Diffuse, Slot::Specular] {
+                let lit = frame.slots[&slot].pixels.iter().any(|pixel| pixel[1] > 0.0);
+                assert!(lit, "{slot} with {changes:?}, sky {sky}");
+            }
+        }
+    }
+}

@@ -105,7 +105,7 @@ fn lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<AreaL
 }
 
 fn even_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<AreaLights>> {
-    let rule = light_rule(options);
+    let rule = light_rule(options).told_apart(cx.frame.set);
     let any = !cx.frame.set.views_of(rule.punctual).is_empty();
     any.then(|| cx.shared(rule, |cx, rule| area_lights(cx.graph, cx.frame.set, cx.lights(), rule)))
 }

@@ -26,6 +26,14 @@ pub(crate) struct LightRule {
     pub(crate) punctual: bool,
 }
 
+impl LightRule {
+    /// The same rule for these lights: where all of them are punctual, those alone are all.
+    pub(crate) fn told_apart(self, set: &LightSet) -> LightRule {
+        let differs = set.views_of(true).len() < set.views_of(false).len();
+        LightRule { punctual: self.punctual && differs, ..self }
+    }
+}
+
 /// The lights of a frame.
 pub(crate) struct AreaLights {
     pub(crate) group: groups::AreaLights,
@@ -43,8 +51,10 @@ pub(crate) struct AreaLights {
 
 /// Declares the passes.
 pub(crate) fn area_lights(graph: &mut Graph<'_>, set: &LightSet, views: &LightViews, rule: &LightRule) -> AreaLights {
-    let slots = reduced(graph, set, views, rule, "lights");
-    grouped(graph, "caches", slots, 1 << (2 * rule.lod))
+    // Of a frame that has both lists each goes by a name of its own.
+    let (name, piece) = if rule.punctual { ("punctual-lights", "caches/punctual") } else { ("lights", "caches") };
+    let slots = reduced(graph, set, views, rule, name);
+    grouped(graph, piece, slots, 1 << (2 * rule.lod))
 }
 
 /// Declares the pass that makes a slot of each block of the views' texels, two texels each (glsl/caches/slots.glsl), in squares of 4^lod of them at least; `name`: of what they are for.
