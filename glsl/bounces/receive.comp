@@ -1,15 +1,15 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "groups/area_lights.glsl"
 #include "groups/scene_rays.glsl"
 #include "bounces/samples.glsl"
 #include "bounces/sum_of_lanes.glsl"
-#include "caches/light_groups.glsl"
+#include "caches/arriving.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "lib/disc.glsl"
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
+#include "lib/weighted_draw.glsl"
 
 // One group of invocations a sample of the surfaces: the irradiance from all virtual area lights of the light views, W/m²,
 //
@@ -29,32 +29,22 @@ layout(push_constant, scalar) uniform Push {
     int end_group;
 } push;
 
-Vpl load_area_light(int index) {
-    return as_disc(unpack_vpl(texelFetch(area_lights, 2 * index), texelFetch(area_lights, 2 * index + 1)));
-}
-
 // One light gets a ray, drawn by what each gives: what comes of lights that are hidden in part is right in the mean.
 vec3 from_group(SurfaceSample point, vec3 position_rs, LightGroup group, uint seed) {
-    float random = float(seed >> 8) / 16777216.0;
-    int target = -1;
-    float whole = 0.0;
+    WeightedDraw draw = start_draw(seed);
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (int number = group.first; number < group.end; ++number) {
-        Vpl light = load_area_light(number);
+        Vpl light = as_disc(load_area_light(number));
         vec3 given = light.strength * disc_form_factor(light, position_rs, point.normal);
         float largest = max3(given);
         if (largest > 0.0) {
             sum += given;
-            whole += largest;
-            float chance = largest / whole;
-            bool taken = random < chance;
-            random = taken ? random / chance : (random - chance) / max(1.0 - chance, 1e-7);
-            target = taken ? number : target;
+            offer(draw, number, largest);
         }
     }
-    if (target >= 0) {
+    if (draw.drawn >= 0) {
         vec3 origin = offset_ray_origin(point.position, point.normal);
-        vec3 way = lifted_vpl(load_area_light(target)) + push.shift - origin;
+        vec3 way = lifted_vpl(load_area_light(draw.drawn)) + push.shift - origin;
         sum = is_occluded(origin, way, 1.0) ? vec3(0.0) : sum;
     }
     return sum;

@@ -26,7 +26,7 @@ void main() {
     if (ask >= min(texelFetch(ask_head, 3).x, push.ask_capacity)) {
         return;
     }
-    uint address = asks[ask].lowest + corner_offset(push.resolution, int(gl_LocalInvocationIndex % 8u));
+    uint address = node_of_ask(asks[ask], push.resolution, int(gl_LocalInvocationIndex % 8u));
     if (addresses[address] != 0u || atomicCompSwap(addresses[address], 0u, LOCKED) != 0u) {
         return;
     }

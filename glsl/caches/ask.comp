@@ -41,7 +41,9 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = textureSize(depth, 0);
     Asking asking = asking_of_pixel(push.cascades, pixel, size);
-    uint packed_normal = asking.asks ? texelFetch(surface, pixel, 0).y : 0u;
+    uvec4 packed_surface = asking.asks ? texelFetch(surface, pixel, 0) : uvec4(0u);
+    uint packed_normal = packed_surface.y;
+    uint kind = packed_surface.z != 0u || (packed_surface.w & 0xFFFFu) != 0u ? 0u : NOT_DIFFUSE;
     // 16 × 16 directions.
     uint facing = packed_normal & 0xF000F000u;
 
@@ -58,10 +60,10 @@ void main() {
         bool asks = asking.asks && (step == 0 || asking.in_both);
         Place place = place_in(push.cascades, asking.cascade + (asks ? step : 0), asking.position_rs);
         uint lowest = address_of(push.cascades, place.cascade, place.lowest);
-        if (speaks(uvec2(asks ? lowest : NO_ADDRESS, facing))) {
+        if (speaks(uvec2(asks ? lowest | kind : NO_ADDRESS, facing))) {
             vec3 normal = unpack_direction(packed_normal);
             bool away = dot(normal, direction_to_eye(camera, asking.position_rs)) < 0.0;
-            append(Ask(asking.position_rs, away ? -normal : normal, lowest));
+            append(Ask(asking.position_rs, away ? -normal : normal, lowest | kind));
         }
     }
 }

@@ -32,6 +32,7 @@ void main() {
     [[dont_unroll]] for (int step = 0; step < (next > 0.0 ? 2 : 1); ++step) {
         Place place = place_in(push.cascades, cascade + step, position_rs);
         uint lowest = address_of(push.cascades, place.cascade, place.lowest);
-        append(Ask(position_rs, point.geometric_normal, lowest));
+        uint kind = max3(point.diffuse_albedo) > 0.0 ? 0u : NOT_DIFFUSE;
+        append(Ask(position_rs, point.geometric_normal, lowest | kind));
     }
 }

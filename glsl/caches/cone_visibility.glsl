@@ -7,8 +7,8 @@
 #include "lib/vpl.glsl"
 #include "caches/rays.glsl"
 
-float visibility_of_group(CacheRays rays, LightGroup group, Vpl middle, vec3 position_rs) {
-    return cone_visibility(position_rs, group.center_rs, group.radius, middle.normal);
+float visibility_of_group(CacheRays rays, LightGroup group, Vpl target, vec3 position_rs) {
+    return cone_visibility(position_rs, group.center_rs, group.radius, target.normal);
 }
 
 #endif

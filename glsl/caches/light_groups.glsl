@@ -1,6 +1,6 @@
 // Groups of virtual area lights that share one visibility: the lit ones among 4^lod neighbours along Morton's curve, a square of the light view. Two texels (rgba32ui) each:
 //   [2g]     the mean position_rs by flux, and the radius of a sphere around it, as floats' bits
-//   [2g + 1] the first light, how many, the one that rays are sent to
+//   [2g + 1] the first light, how many
 #ifndef CACHES_LIGHT_GROUPS
 #define CACHES_LIGHT_GROUPS
 
@@ -9,14 +9,13 @@ struct LightGroup {
     float radius;
     int first;
     int end;
-    int middle;
 };
 
 LightGroup load_light_group(usamplerBuffer groups, int group) {
     uvec4 sphere = texelFetch(groups, 2 * group);
     uvec4 list = texelFetch(groups, 2 * group + 1);
     return LightGroup(
-        uintBitsToFloat(sphere.xyz), uintBitsToFloat(sphere.w), int(list.x), int(list.x + list.y), int(list.z));
+        uintBitsToFloat(sphere.xyz), uintBitsToFloat(sphere.w), int(list.x), int(list.x + list.y));
 }
 
 #endif

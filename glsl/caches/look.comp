@@ -4,7 +4,7 @@
 #include "caches/cascades.glsl"
 #include "caches/horizons.glsl"
 
-// One invocation for each node that is asked for adds what the asking surface has in front of it to what its cache's surfaces have (caches/horizons.glsl).
+// One invocation for each node that is asked for adds what the asking surface, if it is diffuse, has in front of it to what its cache's surfaces have (caches/horizons.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -26,7 +26,10 @@ void main() {
         return;
     }
     Ask ask = asks[number];
-    uint address = ask.lowest + corner_offset(push.resolution, int(gl_LocalInvocationIndex % 8u));
+    if ((ask.lowest & NOT_DIFFUSE) != 0u) {
+        return;
+    }
+    uint address = node_of_ask(ask, push.resolution, int(gl_LocalInvocationIndex % 8u));
     uint index = texelFetch(addresses, int(address)).x - 1u;
     if (index >= push.capacity) {
         return;

@@ -29,7 +29,7 @@ void main() {
         return;
     }
     Ask ask = asks[number];
-    uint address = ask.lowest + corner_offset(push.cascades.resolution, int(gl_LocalInvocationIndex % 8u));
+    uint address = node_of_ask(ask, push.cascades.resolution, int(gl_LocalInvocationIndex % 8u));
     uint index = texelFetch(addresses, int(address)).x - 1u;
     if (index >= push.capacity) {
         return;

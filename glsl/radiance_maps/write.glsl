@@ -7,6 +7,8 @@
 #include "caches/arriving.glsl"
 #include "caches/rays.glsl"
 #include "lib/color.glsl"
+#include "lib/sobol.glsl"
+#include "lib/weighted_draw.glsl"
 #include "radiance_maps/horizon.glsl"
 #include "radiance_maps/map.glsl"
 #include "radiance_maps/of_map.glsl"
@@ -105,7 +107,7 @@ void add_parts(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 posi
 
 void add_light(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 position_rs, float factor) {
     vec3 direction;
-    vec3 amount = factor * light_from(light, position_rs, direction);
+    vec3 amount = factor * point_light_from(light, position_rs, direction);
     if (max3(amount) <= 0.0) {
         return;
     }
@@ -118,15 +120,19 @@ void add_light(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 posi
     }
 }
 
-// Whether a light of the group faces the cache and has a part before its horizon.
-bool shines_any(LightGroup group, MapHorizon horizon, vec3 position_rs) {
-    bool shines = false;
-    for (int index = group.first; index < group.end && !shines; ++index) {
+// The light of a group that a ray is sent to, drawn by what each gives that faces the cache and has a part before its horizon; -1 if none does.
+int target_of(LightGroup group, uint number, MapHorizon horizon, vec3 position_rs) {
+    WeightedDraw draw = start_draw(mix_bits(number));
+    for (int index = group.first; index < group.end; ++index) {
         Vpl light = load_area_light(index);
-        vec3 way = light.position_rs - position_rs;
-        shines = dot(light.normal, way) < 0.0 && is_before(horizon, way + sqrt(PI * light.area_over_pi) * horizon.normal);
+        vec3 direction;
+        float given = max3(point_light_from(light, position_rs, direction));
+        vec3 farthest = light.position_rs - position_rs + sqrt(PI * light.area_over_pi) * horizon.normal;
+        if (given > 0.0 && is_before(horizon, farthest)) {
+            offer(draw, index, given);
+        }
     }
-    return shines;
+    return draw.drawn;
 }
 
 void write_map() {
@@ -155,8 +161,9 @@ void write_map() {
     int end = min(push.end_group, int(texelFetch(area_light_counts, 1).x));
     for (int index = push.first_group + int(self); index < end; index += 64) {
         LightGroup group = load_light_group(area_light_groups, index);
-        if (shines_any(group, horizon, position_rs)) {
-            float visibility = visibility_of_group(push.rays, group, load_area_light(group.middle), position_rs);
+        int target = target_of(group, uint(index), horizon, position_rs);
+        if (target >= 0) {
+            float visibility = visibility_of_group(push.rays, group, load_area_light(target), position_rs);
             for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
                 add_light(first, frame, horizon, load_area_light(number), position_rs, scale * visibility);
             }

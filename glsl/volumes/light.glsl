@@ -2,12 +2,12 @@
 #ifndef VOLUMES_LIGHT
 #define VOLUMES_LIGHT
 
-#include "groups/area_lights.glsl"
 #include "groups/light_caches.glsl"
-#include "caches/light_groups.glsl"
+#include "caches/arriving.glsl"
 #include "lib/sobol.glsl"
 #include "lib/spherical_harmonics.glsl"
 #include "lib/disc.glsl"
+#include "lib/weighted_draw.glsl"
 #include "caches/rays.glsl"
 
 // One group of invocations a cache: the light that comes to it from all virtual area lights, as spherical harmonics of two or three bands (Reich 2015, section 4.3.2),
@@ -36,33 +36,50 @@ const uint NUMBERS = BANDS == 3u ? 28u : 12u;
 
 shared float found[64 * 28];
 
-// Of the surfaces that ask for the cache, and the mean of the ways that they face.
+// Of the surfaces that ask for the cache; the box around all of them, and the mean of the ways that they face.
 shared Horizon horizons[FACINGS];
-shared uint horizon_count;
-shared vec3 facing;
+shared Horizon shared_whole;
+shared uint shared_count;
+shared vec3 shared_facing;
+
+// The same for one invocation: loops read shared memory no more than they must.
+Horizon whole;
+uint horizon_count;
+vec3 facing;
 
 // All invocations must come here.
 void load_horizons(uint cache) {
     if (gl_LocalInvocationIndex == 0u) {
         uint count = 0u;
         vec3 sum = vec3(0.0);
+        Horizon around = Horizon(vec3(1.0), vec3(-1.0), -3e38);
         [[dont_unroll]] for (uint index = 0u; index < FACINGS; ++index) {
             Horizon horizon;
             if (horizon_of_cache(cache, index, horizon)) {
                 horizons[count++] = horizon;
                 sum += 0.5 * (horizon.low + horizon.high);
+                around = Horizon(min(around.low, horizon.low), max(around.high, horizon.high), max(around.height, horizon.height));
             }
         }
-        horizon_count = count;
-        facing = sum / max(float(count), 1.0);
+        shared_count = count;
+        shared_whole = around;
+        shared_facing = sum / max(float(count), 1.0);
     }
     barrier();
+    whole = shared_whole;
+    horizon_count = shared_count;
+    facing = shared_facing;
+}
+
+bool is_above_one(uint index, vec3 way) {
+    return index < horizon_count && is_above(horizons[index], way);
 }
 
 bool is_above_any(vec3 way) {
-    bool above = false;
-    for (uint index = 0u; index < horizon_count && !above; ++index) {
-        above = is_above(horizons[index], way);
+    bool above = is_above(whole, way);
+    if (above && horizon_count > 1u) {
+        // Written out: steps of loops are counted (src/diffuse/volumes/light.rs).
+        above = is_above_one(0u, way) || is_above_one(1u, way) || is_above_one(2u, way) || is_above_one(3u, way) || is_above_one(4u, way) || is_above_one(5u, way);
     }
     return above;
 }
@@ -73,44 +90,51 @@ struct Sums {
     vec3 last;
 };
 
-Vpl load_area_light(int index) {
-    return unpack_vpl(texelFetch(area_lights, 2 * index), texelFetch(area_lights, 2 * index + 1));
-}
-
-// Φ/π · |F|, and the unit vector along F. From below all surfaces that ask for the cache nothing comes.
+// Φ/π · |F|, and the unit vector along F.
 vec3 light_from(Vpl light, vec3 position_rs, out vec3 direction) {
-    vec3 factor = vec3(0.0);
     if (PAPER != 0u) {
-        vec3 difference = light.position_rs - position_rs;
-        float squared = dot(difference, difference) + 1e-20;
-        float cosine = max(-dot(light.normal, difference) * inversesqrt(squared), 0.0);
-        factor = difference * (inversesqrt(squared) * cosine / (squared + light.area_over_pi));
-    } else if (is_above_any(light.position_rs - position_rs)) {
-        factor = disc_vector(as_disc(light), position_rs, facing);
+        return point_light_from(light, position_rs, direction);
     }
+    Vpl disc = as_disc(light);
+    vec3 factor = disc_vector(disc, position_rs, facing);
     float size = length(factor);
     direction = factor / max(size, 1e-30);
-    return (PAPER != 0u ? light.strength : as_disc(light).strength) * size;
+    return disc.strength * size;
 }
 
-// One light of a group, drawn by what each gives, so that Σ_i E_i V_i of lights that are hidden in part is met in the mean; -1 if none gives anything. The number that it
-// is drawn by is the group's: neighbouring caches send their rays to the same light, and nothing flickers between them.
-int target_of(LightGroup group, uint number, vec3 position_rs) {
-    float random = float(mix_bits(number) >> 8) / 16777216.0;
-    float sum = 0.0;
-    int target = -1;
+// What a light gives, about. From behind it, and from below all surfaces that ask for the cache, nothing comes.
+float about_given(Vpl light, vec3 position_rs) {
+    vec3 direction;
+    float given = max3(point_light_from(light, position_rs, direction));
+    return PAPER != 0u || (given > 0.0 && is_above_any(light.position_rs - position_rs)) ? given : 0.0;
+}
+
+// The first lights of a group that give the cache something are known by a bit each.
+const int KNOWN_LIGHTS = 32;
+
+struct Target {
+    int light;   // -1: none gives anything
+    uint gives;
+};
+
+// One light of a group, drawn by what each gives, so that Σ_i E_i V_i of lights that are hidden in part is met in the mean. The number that it is drawn by is the group's:
+// neighbouring caches send their rays to the same light, and nothing flickers between them.
+Target target_of(LightGroup group, uint number, vec3 position_rs) {
+    WeightedDraw draw = start_draw(mix_bits(number));
+    uint gives = 0u;
     for (int index = group.first; index < group.end; ++index) {
-        vec3 direction;
-        float given = max3(light_from(load_area_light(index), position_rs, direction));
+        float given = about_given(load_area_light(index), position_rs);
         if (given > 0.0) {
-            sum += given;
-            float chance = given / sum;
-            bool taken = random < chance;
-            random = taken ? random / chance : (random - chance) / max(1.0 - chance, 1e-7);
-            target = taken ? index : target;
+            offer(draw, index, given);
+            gives |= index - group.first < KNOWN_LIGHTS ? 1u << (index - group.first) : 0u;
         }
     }
-    return target;
+    return Target(draw.drawn, gives);
+}
+
+bool gives(Target target, LightGroup group, int index, vec3 position_rs) {
+    int place = index - group.first;
+    return place < KNOWN_LIGHTS ? (target.gives >> place & 1u) != 0u : about_given(load_area_light(index), position_rs) > 0.0;
 }
 
 void light_cache() {
@@ -124,14 +148,19 @@ void light_cache() {
         return;
     }
     vec3 position_rs = position_of_cache(cache);
-    load_horizons(cache);
+    if (PAPER == 0u) {
+        load_horizons(cache);
+    }
     Sums sums = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0));
     for (int index = push.first_group + int(self); index < end; index += 64) {
         LightGroup group = load_light_group(area_light_groups, index);
-        int target = target_of(group, uint(index), position_rs);
-        if (target >= 0) {
-            float visibility = visibility_of_group(push.rays, group, load_area_light(target), position_rs);
-            for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
+        Target target = target_of(group, uint(index), position_rs);
+        if (target.light < 0) {
+            continue;
+        }
+        float visibility = visibility_of_group(push.rays, group, load_area_light(target.light), position_rs);
+        for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
+            if (gives(target, group, number, position_rs)) {
                 vec3 direction;
                 vec3 received = visibility * light_from(load_area_light(number), position_rs, direction);
                 sums.low += outerProduct(harmonics_of_low_bands(direction), received);

@@ -243,9 +243,13 @@ fn both_slots_share_caches_and_change_nothing_of_each_other() {
     let asked =
         |slots: &[Slot]| FrameRequest { timing: Timing::Passes, image: false, ..request(SIZE, camera.clone(), slots) };
     let both = session.render(&scene, &set(&[]), &asked(&[Slot::Diffuse, Slot::Specular]));
-    for pass in ["caches/places/allocate", "caches/places/ask", "caches/lights/reduce", "light-views/reflective"] {
+    for pass in ["caches/places/allocate", "caches/places/ask", "light-views/reflective"] {
         assert_eq!(passes_run(&both, pass), [pass], "made once");
     }
+    // Lights are the same ones where they are spread alike over the views.
+    let even = set(&[("volumes.spread", "views")]);
+    let even = session.render(&scene, &even, &asked(&[Slot::Diffuse, Slot::Specular]));
+    assert_eq!(passes_run(&even, "caches/lights/reduce"), ["caches/lights/reduce"], "made once");
     let mut alone = set(&[]);
     alone.methods.specular = SpecularMethod::None;
     let diffuse = session.render(&scene, &alone, &asked(&[Slot::Diffuse]));
@@ -384,7 +388,7 @@ fn paths_leave_out_what_is_specular_on_the_way() {
     assert!(none < 0.8 * all && none > 0.0, "a metal wall faces it: {none} of {all}");
 }
 
-/// Both slots have lists of lights of their own where lamps or the sky shine: a frame has both, at every preset that makes them so.
+/// Both slots have lists of lights of their own, or share one: a frame has both, whatever makes them so.
 #[test]
 fn frames_have_both_slots_whatever_lists_they_light_by() {
     let session = Session::open();
@@ -392,7 +396,8 @@ fn frames_have_both_slots_whatever_lists_they_light_by() {
         let mut scene = builtin("cornell-glossy");
         scene.set_sky([sky; 3]);
         let camera = scene.camera_view(None).expect("its camera");
-        for changes in [&[("volumes.spread", "views")][..], &[("volumes.bounces", "3"), ("volumes.samples", "256")]] {
+        let bounces = [("volumes.bounces", "3"), ("volumes.samples", "256")];
+        for changes in [&[][..], &[("volumes.spread", "views")], &bounces] {
             let asked = request([32, 24], camera.clone(), &[Slot::Diffuse, Slot::Specular]);
             let frame = session.render(&scene, &set(changes), &asked);
             for slot in [Slot::Diffuse, Slot::Specular] {
