@@ -8,6 +8,9 @@
 
 layout(local_size_x = 64) in;
 
+// 1: caches add the area of a light to its squared distance, the paper, and not that over π.
+layout(constant_id = 0) const uint PAPER = 0u;
+
 layout(set = 0, binding = 0) uniform usamplerBuffer samples;
 layout(set = 0, binding = 1) uniform samplerBuffer matter;  // bounces/albedo.comp
 layout(set = 0, binding = 2) uniform samplerBuffer sums;    // ΣE, W/m²
@@ -27,6 +30,6 @@ void main() {
     vec4 made = texelFetch(matter, int(index));
     vec3 flux = made.w * made.rgb * texelFetch(sums, int(index)).rgb;
     bool lit = max3(flux) > 0.0 && is_finite(flux);
-    slots[2u * index] = lit ? pack_vpl_position(point.position - push.shift, point.area) : vec4(0.0);
+    slots[2u * index] = lit ? pack_vpl_position(point.position - push.shift, PAPER != 0u ? PI * point.area : point.area) : vec4(0.0);
     slots[2u * index + 1u] = lit ? pack_vpl_strength(flux, point.normal) : vec4(0.0);
 }

@@ -19,6 +19,9 @@
 
 layout(local_size_x = 64) in;
 
+// 1: lights have their area, the paper, in place of that over π; here they are discs all the same.
+layout(constant_id = 0) const uint PAPER = 0u;
+
 layout(set = 0, binding = 0) uniform usamplerBuffer samples;
 layout(set = 0, binding = 1) buffer ArrivedBlock { vec4 arrived[]; };
 
@@ -35,6 +38,7 @@ vec3 from_group(SurfaceSample point, vec3 position_rs, LightGroup group, uint se
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (int number = group.first; number < group.end; ++number) {
         Vpl light = as_disc(load_area_light(number));
+        light.area_over_pi *= PAPER != 0u ? INVERSE_PI : 1.0;
         vec3 given = light.strength * disc_form_factor(light, position_rs, point.normal);
         float largest = max3(given);
         if (largest > 0.0) {

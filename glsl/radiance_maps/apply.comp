@@ -13,7 +13,7 @@
 //
 //   L(x) = (f0·A + f90·B) · Σ_k w_k Σ_l c_l E_l,k(h) / Σ_k w_k Σ_l c_l W_l(h)
 //
-// w_k the weights of the eight caches around x (Reich 2015, section 4.4; volumes/apply.comp), c_l the lobe's share of level l per solid angle (radiance_maps/lobes.glsl), E and
+// w_k the weights of the eight caches around x (Reich 2015, section 4.4; volumes/irradiance.glsl), c_l the lobe's share of level l per solid angle (radiance_maps/lobes.glsl), E and
 // W bilinear between the map's texels (radiance_maps/map.glsl), h the half vector of the direction that x mirrors, as cache k sees the eye. Of W only
 // what lies above the surface's horizon counts. There is no light from below in maps with a horizon; in others a texel across it gives the mean of all of its light and of its
 // share above. A and B are the lobe's directional albedo for Fresnel terms of 1 and 0, and 0 and 1: a uniform L is reflected as the lobe itself does.

@@ -82,13 +82,9 @@ pub(crate) struct Made {
     pub(crate) samples: Rc<Option<AreaLights>>,
 }
 
+/// Lamps and the sky are in views of their own where rays do not bring their light.
 fn light_rule(options: &VolumesOptions) -> LightRule {
-    LightRule {
-        side: options.lights,
-        lod: options.lod,
-        paper: options.val == VolumesVal::Paper,
-        punctual: options.area_lights == VolumesAreaLights::Rays,
-    }
+    LightRule { punctual: options.area_lights == VolumesAreaLights::Rays, ..options.cache_settings().lights }
 }
 
 /// Lights of what the light views see, if any do.
@@ -113,7 +109,8 @@ fn even_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<
 /// Lights of what samples of the surfaces reflect, if anything is asked of them.
 fn sample_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Rc<Option<AreaLights>> {
     let area_lights = options.area_lights == VolumesAreaLights::Rays;
-    let rule = BounceRule { bounces: options.bounces, samples: options.samples, lod: options.lod, area_lights };
+    let &VolumesOptions { bounces, samples, lod, val, .. } = options;
+    let rule = BounceRule { bounces, samples, lod, area_lights, paper: val == VolumesVal::Paper };
     let Some(scene) = cx.rays().filter(|scene| rule.wants_samples(scene)) else { return Rc::new(None) };
     let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
     // Whatever the picture shows, so that they stand while the camera moves.

@@ -90,11 +90,11 @@ choices! {
     }
 }
 choices! {
-    /// What a virtual area light's area A adds to the squared distance d².
+    /// What a virtual area light is to a cache.
     VolumesVal {
-        /// A: the paper.
+        /// A point whose area A is added to the squared distance: the paper.
         Paper = "paper",
-        /// A/π, a disc's irradiance on its axis.
+        /// A disc, exactly.
         Disc = "disc",
     }
 }
@@ -141,8 +141,8 @@ options! {
     /// Scatterings between the light and the first visible surface at most; 0: no indirect light. From the second on samples of the whole scene's surfaces exchange light.
     bounces: u32 = 1, high = 16; OptionKind::Integer(0, 16), "scatterings", "";
     /// Samples of all diffuse surface, with `bounces` beyond 1, and with `area_lights=rays` where there are any.
-    samples: u32 = 4096, draft = 1024, high = 16384; OptionKind::Integer(16, 16384), "samples", "linear, quadratic beyond two bounces";
-    /// What the area of a virtual area light adds to the squared distance.
+    samples: u32 = 4096, draft = 1024; OptionKind::Integer(16, 16384), "samples", "linear, quadratic where samples light each other";
+    /// What a virtual area light is to a cache.
     val: VolumesVal = VolumesVal::Disc, paper = VolumesVal::Paper; OptionKind::Choice(VolumesVal::NAMES), "", "";
 }
 

@@ -34,6 +34,8 @@ pub(crate) struct BounceRule {
     pub(crate) lod: u32,
     /// They take the light of emissive surfaces and of the sky, which light views know by few samples.
     pub(crate) area_lights: bool,
+    /// Lights have their areas in the paper's form.
+    pub(crate) paper: bool,
 }
 
 impl BounceRule {
@@ -75,6 +77,7 @@ pub(crate) fn sample_lights(
         matter: matter.texels(FLOATS),
         sums: sums.texels(FLOATS),
         slots: slots.write(),
+        paper: u32::from(rule.paper),
         push: LightsPush { shift, slot_count },
     };
     graph.pass("bounces/lights/make", pass).threads([slot_count, 1, 1]);
@@ -94,7 +97,7 @@ fn light(
     if rule.bounces < 2 {
         return lamps;
     }
-    let from_views = first.map(|first| receive(graph, shift, first, space));
+    let from_views = first.map(|first| receive(graph, (shift, rule.paper), first, space));
     let mut known = lamps.map(|lamps| (lamps, lamps));
     let mut sees_known = None;
     for number in 2..=rule.bounces {
@@ -111,7 +114,7 @@ fn light(
 }
 
 /// What comes to the samples from the light views' lights, W/m².
-fn receive(graph: &mut Graph<'_>, shift: [f32; 3], first: &AreaLights, space: &Space) -> Light {
+fn receive(graph: &mut Graph<'_>, (shift, paper): ([f32; 3], bool), first: &AreaLights, space: &Space) -> Light {
     let arrived = graph.buffer::<[f32; 4]>("bounces.from_views", space.slot_count as usize);
     let steps = RAY_STEPS + LIGHT_STEPS * first.group_lights;
     let most = LANES.saturating_mul((graph.traits().loop_steps / steps).max(1)).min(i32::MAX.cast_unsigned());
@@ -120,6 +123,7 @@ fn receive(graph: &mut Graph<'_>, shift: [f32; 3], first: &AreaLights, space: &S
             area_lights: first.group.clone(),
             scene_rays: space.rays.clone(),
             samples: space.samples.texels(WORDS),
+            paper: u32::from(paper),
             arrived: if first_group == 0 { arrived.start_then_read() } else { arrived.read_write() },
             push: ReceivePush {
                 shift,

@@ -1,6 +1,6 @@
 //! `radiance-maps`: glossy reflections of what lights shine on, from a map of directions at each light cache (Reich 2015, sections 4.3.3 and 4.4).
 //!
-//! 1. Caches and virtual area lights are those of `volumes` (`frame/caches/`): made once for both.
+//! 1. Caches are those of `volumes` (`frame/caches/`), made once for both; virtual area lights are blocks of all light views, shared where `volumes` has the same.
 //! 2. `maps.rs`: caches around specular surfaces get maps, which all lights are written to, and these their levels.
 //! 3. `apply.rs`: every pixel looks its eight caches' maps up as wide as its lobe is.
 //!
