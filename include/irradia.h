@@ -32,7 +32,7 @@
  * RULES, for every function unless it says otherwise
  *
  * Status.     What can fail returns an irradia_status. Beside IRRADIA_OK, irradia_last_error() has one sentence on what, where and what to do, for this thread.
- *             A call that fails changes nothing but what it says. No call ends the process, throws, or writes to the terminal.
+ *             A call that fails changes nothing but what it says; what it was to give is then null, or 0. No call ends the process, throws, or writes to the terminal.
  * Pointers.   A pointer is to what its description says, or null where that says so; null elsewhere is IRRADIA_ERROR_ARGUMENT. What a call is given it reads or
  *             fills before it returns, and keeps no pointer to, but for callbacks and what they are given. Texts are UTF-8 and end in a zero.
  * Descriptors begin with their size: write `irradia_x_descriptor d = {.size = sizeof d};`, in C++ `irradia_x_descriptor d{}; d.size = sizeof d;`: that leaves zeros in
@@ -262,6 +262,9 @@ typedef struct {
     double clip_from_camera[16];
 } irradia_camera_descriptor;
 
+// Names a thing in a scene: 1 for the first of its kind, 2 for the second. 0: none.
+typedef uint32_t irradia_id;
+
 // Hears what the library says: one message, UTF-8, which stands during the call. It may be called from any thread, the library's own included, and from
 // several at once. It must not call the library.
 typedef void (*irradia_log_function)(void *user, uint32_t level, const char *message);
@@ -305,7 +308,7 @@ typedef struct {
     // The VkPhysicalDeviceFeatures2 of what was enabled, with the structs behind it, as it stood behind VkDeviceCreateInfo; it may be the one of
     // irradia_requirements_get(). Not needed any more once the call returns.
     const void *features;
-    // Called before each submission to the queue; null: nobody else uses the queue while a call of the library is in progress.
+    // Called before each submission to the queue; null: nobody else uses the queue while a call of the library is in progress, another context on it included.
     irradia_queue_function lock_queue;
     // Called after it.
     irradia_queue_function unlock_queue;
@@ -360,7 +363,8 @@ typedef struct {
     uint32_t is_buffer;
     // The handle.
     uint64_t resource;
-    // Of an image, its VkFormat. VK_FORMAT_R32G32B32A32_SFLOAT is copied; others are converted, as vkCmdBlitImage does.
+    // Of an image, its VkFormat. VK_FORMAT_R32G32B32A32_SFLOAT is copied; other colours in floats, in parts of 1 or in sRGB are converted as vkCmdBlitImage does, if the
+    // device can.
     uint32_t format;
     // Of a buffer, pixels from one row to the next; 0: the frame's width.
     uint32_t row_pixels;
@@ -412,11 +416,13 @@ typedef struct {
     const irradia_target_descriptor *targets;
     // How many.
     size_t target_count;
-    // 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none.
+    // 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none. Of `targets` the host reads how many
+    // pixels are not finite, a word each, and no pixel.
     uint32_t stay_on_device;
     // How long points are waited for, seconds; 0: 10. A point that is not reached by then is IRRADIA_ERROR_DEVICE, and nothing is signalled.
     float patience;
-    // Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are.
+    // Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are, before it
+    // begins with the frame.
     const irradia_semaphore_point *waits;
     // How many.
     size_t wait_count;
@@ -495,9 +501,6 @@ typedef struct {
     // Zero.
     uint32_t reserved;
 } irradia_light_descriptor;
-
-// Names a thing in a scene: 1 for the first of its kind, 2 for the second. 0: none.
-typedef uint32_t irradia_id;
 
 // What loading may do. Zeros are the defaults, which are safe for scenes of unknown origin.
 typedef struct {
@@ -632,7 +635,8 @@ typedef struct {
     irradia_vertex_attribute positions;
     // x, y, z; made unit vectors. Without them triangles are flat.
     irradia_vertex_attribute normals;
-    // x, y, z along +u, and ±1: the bitangent is that times normal × tangent. Where a normal texture needs them and they are not given, they are made.
+    // x, y, z along +u, and ±1: the bitangent is that times normal × tangent. Where a normal texture needs them and they are not given, they are made. They are kept
+    // where the material has a normal texture when the mesh is given: set the material first, or the mesh again.
     irradia_vertex_attribute tangents;
     // u, v of the sets 0 and 1; v grows downwards in the image.
     irradia_vertex_attribute texcoords[2];
@@ -664,8 +668,8 @@ typedef struct {
     irradia_id mesh;
     // The light that shines from here along -Z; 0: none.
     irradia_id light;
-    // Zero.
-    uint32_t reserved;
+    // The camera that looks from here along -Z; 0: none.
+    irradia_id camera;
     // Node space to parent space, metres: 4×4, column after column, the last row 0 0 0 1. All zero: the identity.
     double local[16];
 } irradia_node_descriptor;
@@ -787,7 +791,7 @@ typedef struct {
 // irradia_renderer_cancel() stopped it. The renderer can go on.
 #define IRRADIA_ERROR_CANCELLED 9
 
-// A fault of the library's own. The handles of the call refuse to be used from now on; destroy them.
+// A fault of the library's own. After one that the sentence calls a failure of the library the handles of the call refuse to be used; destroy them.
 #define IRRADIA_ERROR_INTERNAL 10
 
 #ifdef __cplusplus
@@ -803,6 +807,24 @@ uint32_t irradia_version(void);
 irradia_status irradia_scene_camera(const irradia_scene *scene,
                                     const char *name,
                                     irradia_camera_descriptor *camera);
+
+// Adds a camera; a node must place it before one can look through it, by its name or its number. It moves as its node does.
+//
+// `name`: null: none. `descriptor`: how it projects; its `world_from_camera` is all zero. A matrix must be as wide as the frames that are taken through it: only their
+// height is looked at.
+// `id`: receives its identifier; may be null.
+//
+// Errors: IRRADIA_ERROR_SCENE for a projection out of range.
+irradia_status irradia_scene_add_camera(irradia_scene *scene,
+                                        const char *name,
+                                        const irradia_camera_descriptor *descriptor,
+                                        irradia_id *id);
+
+// Replaces a camera, its name too.
+irradia_status irradia_scene_set_camera(irradia_scene *scene,
+                                        irradia_id id,
+                                        const char *name,
+                                        const irradia_camera_descriptor *descriptor);
 
 // Opens a device.
 //
@@ -845,8 +867,11 @@ irradia_status irradia_context_allocations(const irradia_context *context,
 // What the scene, its lights and the camera leave unchanged since the renderer's last frame is not made again. The scene may belong to another context.
 // `frame`: receives the frame, which irradia_frame_destroy() ends.
 //
-// Errors: IRRADIA_ERROR_ARGUMENT, IRRADIA_ERROR_SCENE for a camera that the scene has not, IRRADIA_ERROR_MEMORY, IRRADIA_ERROR_DEVICE_LOST, IRRADIA_ERROR_CANCELLED.
-// The renderer can go on after each but a lost device.
+// Errors: IRRADIA_ERROR_ARGUMENT; IRRADIA_ERROR_SCENE for a camera that the scene has not; IRRADIA_ERROR_SETTINGS for methods that do not go together; IRRADIA_ERROR_DEVICE
+// for what the device cannot do, a target that cannot be filled and a point that is not reached; IRRADIA_ERROR_MEMORY; IRRADIA_ERROR_DEVICE_LOST; IRRADIA_ERROR_CANCELLED;
+// IRRADIA_ERROR_INTERNAL if a pixel were not a finite number of at least 0, which is a fault of the library's: its sentence names the pass.
+// The renderer can go on after each but a lost device and a failure of the library. A frame that failed on its way may have moved on what is kept over frames;
+// one that was refused, for an argument, a target or a point that is not reached, has not.
 irradia_status irradia_render(irradia_renderer *renderer,
                               const irradia_scene *scene,
                               const irradia_frame_descriptor *descriptor,

@@ -102,13 +102,19 @@ pub(super) fn stay_inside() {
     INSIDE.set(true);
 }
 
+/// Whether the calling thread is inside of a call; says so from now on. A thread that is ending is.
+fn go_inside(inside: bool) -> bool {
+    INSIDE.try_with(|known| known.replace(inside)).unwrap_or(true)
+}
+
 /// Panics inside of a call are told by its status; the standard hook would write to the terminal.
 fn keep_panics_quiet() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let others = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
-            if INSIDE.get() {
+            // Scenes without a context work on rayon's own threads, which nobody told.
+            if INSIDE.try_with(Cell::get).unwrap_or(true) || rayon::current_thread_index().is_some() {
                 tracing::error!("{info}");
             } else {
                 others(info);
@@ -121,10 +127,10 @@ fn keep_panics_quiet() {
 pub(super) fn call<'a>(body: impl FnOnce(&mut Border<'a>) -> Result<(), Fault>) -> Status {
     keep_panics_quiet();
     let mut border = Border::default();
-    let outside = INSIDE.replace(true);
+    let outside = go_inside(true);
     // Values of handles that a panic leaves half done are not looked at again: their state says so.
     let done = catch_unwind(AssertUnwindSafe(|| body(&mut border)));
-    INSIDE.set(outside);
+    go_inside(outside);
     let (fault, state) = match done {
         Ok(Ok(())) => (None, FREE),
         Ok(Err(fault)) => (Some(fault), FREE),
@@ -145,26 +151,31 @@ pub(super) fn call<'a>(body: impl FnOnce(&mut Border<'a>) -> Result<(), Fault>) 
     })
 }
 
-/// Gives the host a handle.
+/// The whole of a call that gives the host a handle. For who does not look at the status, one that could not be made is null.
 ///
 /// # Safety
 /// `place` is null, which is a fault, or may be written to.
-pub(super) unsafe fn give<H>(place: *mut *mut H, handle: impl FnOnce() -> Result<H, Fault>) -> Result<(), Fault> {
-    if place.is_null() {
-        return Err(Fault::argument("the place for the new handle is a null pointer"));
-    }
-    // SAFETY: the caller's. A handle that could not be made is null for who does not look at the status.
-    unsafe { place.write(std::ptr::null_mut()) };
-    let handle = Box::into_raw(Box::new(handle()?));
-    // SAFETY: as above.
-    unsafe { place.write(handle) };
-    Ok(())
+pub(super) unsafe fn create<'a, H>(
+    place: *mut *mut H,
+    make: impl FnOnce(&mut Border<'a>) -> Result<H, Fault>,
+) -> Status {
+    call(|border| {
+        if place.is_null() {
+            return Err(Fault::argument("the place for the new handle is a null pointer"));
+        }
+        // SAFETY: the caller's.
+        unsafe { place.write(std::ptr::null_mut()) };
+        let handle = Box::into_raw(Box::new(make(border)?));
+        // SAFETY: as above.
+        unsafe { place.write(handle) };
+        Ok(())
+    })
 }
 
 /// Takes a handle back, whatever state it is in.
 ///
 /// # Safety
-/// `handle` is null or came from [`give`], and is used no more.
+/// `handle` is null or came from [`create`], and is used no more.
 pub(super) unsafe fn take<H>(handle: *mut H) {
     if !handle.is_null() {
         let destroy = AssertUnwindSafe(|| {
@@ -172,11 +183,11 @@ pub(super) unsafe fn take<H>(handle: *mut H) {
             drop(unsafe { Box::from_raw(handle) });
         });
         keep_panics_quiet();
-        let outside = INSIDE.replace(true);
+        let outside = go_inside(true);
         if let Err(panic) = catch_unwind(destroy) {
             std::mem::forget(panic);
         }
-        INSIDE.set(outside);
+        go_inside(outside);
     }
 }
 

@@ -5,12 +5,12 @@ use std::ffi::c_char;
 use glam::DAffine3;
 
 use super::border::call;
-use super::descriptor::{descriptors, read_optional, write};
+use super::descriptor::{Descriptor, descriptors, read, read_optional, write, zero};
 use super::matrix::affine;
-use super::scene::SceneHandle;
+use super::scene::{Id, SceneHandle, add, index_of};
 use super::status::{Fault, Status};
 use super::text::optional_text;
-use crate::scene::{CameraView, Projection, Scene};
+use crate::scene::{Camera, CameraId, CameraView, Projection, Scene};
 
 /// Central projection by its vertical angle.
 pub const IRRADIA_PROJECTION_PERSPECTIVE: u32 = 0;
@@ -53,21 +53,7 @@ descriptors! {
 /// The camera of a frame of `width` to `height` pixels.
 pub(super) fn view(given: &CameraDescriptor, [width, height]: [u32; 2]) -> Result<CameraView, Fault> {
     let world = affine(&given.world_from_camera, "the camera's matrix")?;
-    let projection = match given.projection {
-        IRRADIA_PROJECTION_PERSPECTIVE => {
-            Projection::Perspective { vertical_fov: given.vertical_fov, aspect: None, near: given.near }
-        }
-        IRRADIA_PROJECTION_ORTHOGRAPHIC => Projection::Orthographic {
-            half_width: given.half_width,
-            half_height: given.half_height,
-            near: given.near,
-            far: given.far,
-        },
-        IRRADIA_PROJECTION_MATRIX => by_matrix(given, f64::from(width) / f64::from(height.max(1)))?,
-        other => {
-            return Err(Fault::argument(format!("the projection is {other}; write one of IRRADIA_PROJECTION_…")));
-        }
-    };
+    let projection = projection(given, Some(f64::from(width) / f64::from(height.max(1))))?;
     let DAffine3 { matrix3, translation } = world;
     let back = matrix3.z_axis;
     if !back.is_normalized() && back.length_squared() <= 0.0 {
@@ -77,7 +63,27 @@ pub(super) fn view(given: &CameraDescriptor, [width, height]: [u32; 2]) -> Resul
     view.fault().map_or(Ok(view), |fault| Err(Fault::argument(format!("the camera cannot be used: {fault}"))))
 }
 
-fn by_matrix(given: &CameraDescriptor, aspect: f64) -> Result<Projection, Fault> {
+/// `aspect`: of the frame, if there is one yet.
+pub(super) fn projection(given: &CameraDescriptor, aspect: Option<f64>) -> Result<Projection, Fault> {
+    zero(given.reserved, CameraDescriptor::NAME)?;
+    Ok(match given.projection {
+        IRRADIA_PROJECTION_PERSPECTIVE => {
+            Projection::Perspective { vertical_fov: given.vertical_fov, aspect: None, near: given.near }
+        }
+        IRRADIA_PROJECTION_ORTHOGRAPHIC => Projection::Orthographic {
+            half_width: given.half_width,
+            half_height: given.half_height,
+            near: given.near,
+            far: given.far,
+        },
+        IRRADIA_PROJECTION_MATRIX => by_matrix(given, aspect)?,
+        other => {
+            return Err(Fault::argument(format!("the projection is {other}; write one of IRRADIA_PROJECTION_…")));
+        }
+    })
+}
+
+fn by_matrix(given: &CameraDescriptor, aspect: Option<f64>) -> Result<Projection, Fault> {
     let m = &given.clip_from_camera;
     if !m.iter().all(|number| number.is_finite()) {
         return Err(Fault::argument("the projection's matrix has a number that is not finite"));
@@ -91,7 +97,7 @@ fn by_matrix(given: &CameraDescriptor, aspect: f64) -> Result<Projection, Fault>
     if skewed {
         return Err(wrong("is skewed; only such that scale x and y are taken"));
     }
-    if ((y / x) / aspect - 1.0).abs() > 1e-3 {
+    if let Some(aspect) = aspect.filter(|aspect| ((y / x) / aspect - 1.0).abs() > 1e-3) {
         return Err(wrong(&format!(
             "is made for a frame {:.4} times as wide as high, and this one is {aspect:.4}",
             y / x
@@ -165,6 +171,52 @@ pub unsafe extern "C" fn irradia_scene_camera(
         }
         // SAFETY: as above.
         unsafe { write(camera, &descriptor) }
+    })
+}
+
+/// A camera of a node.
+///
+/// # Safety
+/// The pointers are what the header asks for.
+unsafe fn of_node(descriptor: *const CameraDescriptor, name: *const c_char) -> Result<Camera, Fault> {
+    // SAFETY: the caller's.
+    let (given, name) = unsafe { (read(descriptor)?, optional_text(name, "the camera's name")?) };
+    if given.world_from_camera != [0.0; 16] {
+        return Err(Fault::argument("a scene's camera stands where its node does: its own matrix must be all zero"));
+    }
+    Ok(Camera { name: name.unwrap_or_default().to_owned(), projection: projection(&given, None)? })
+}
+
+/// Adds a camera; a node must place it before one can look through it, by its name or its number. It moves as its node does.
+///
+/// `name`: null: none. `descriptor`: how it projects; its `world_from_camera` is all zero. A matrix must be as wide as the frames that are taken through it: only their
+/// height is looked at.
+/// `id`: receives its identifier; may be null.
+///
+/// Errors: IRRADIA_ERROR_SCENE for a projection out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn irradia_scene_add_camera(
+    scene: *mut SceneHandle,
+    name: *const c_char,
+    descriptor: *const CameraDescriptor,
+    id: *mut Id,
+) -> Status {
+    // SAFETY: the host's pointers are what the header asks for.
+    unsafe { add(scene, id, |state| Ok(state.scene.add_camera(of_node(descriptor, name)?)?.0)) }
+}
+
+/// Replaces a camera, its name too.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn irradia_scene_set_camera(
+    scene: *mut SceneHandle,
+    id: Id,
+    name: *const c_char,
+    descriptor: *const CameraDescriptor,
+) -> Status {
+    call(|border| {
+        // SAFETY: the host's pointers are what the header asks for.
+        let (state, camera) = unsafe { (border.enter(scene)?, of_node(descriptor, name)?) };
+        Ok(state.scene.set_camera(CameraId(index_of(id, "camera")?), camera)?)
     })
 }
 

@@ -3,7 +3,7 @@
 use std::ffi::{CString, c_char, c_void};
 use std::sync::Arc;
 
-use super::border::{call, give, take};
+use super::border::{call, create, take};
 use super::descriptor::{descriptors, read_optional};
 use super::log::{LogFunction, dispatch};
 use super::status::{Fault, Status};
@@ -87,10 +87,8 @@ pub unsafe extern "C" fn irradia_context_create(
     descriptor: *const ContextDescriptor,
     context: *mut *mut ContextHandle,
 ) -> Status {
-    call(|_| {
-        // SAFETY: the host's pointers are what the header asks for.
-        unsafe { give(context, || open(descriptor)) }
-    })
+    // SAFETY: the host's pointers are what the header asks for.
+    unsafe { create(context, |_| open(descriptor)) }
 }
 
 /// # Safety

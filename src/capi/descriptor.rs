@@ -112,6 +112,17 @@ pub(super) unsafe fn slice<'a, T>(pointer: *const T, count: usize, what: &str) -
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
+/// A field without a meaning so far, which a newer library may give one.
+pub(super) fn zero(reserved: u32, what: &str) -> Result<(), Fault> {
+    if reserved == 0 {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the {what} has {reserved} in a reserved field, of which this version of the library knows nothing; write 0"
+    );
+    Err(Fault { status: IRRADIA_ERROR_VERSION, sentence })
+}
+
 /// A boolean of the host's.
 pub(super) fn boolean(value: u32, what: &str) -> Result<bool, Fault> {
     match value {

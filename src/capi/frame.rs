@@ -2,9 +2,9 @@
 
 use std::ffi::{CString, c_char, c_void};
 
-use super::border::{Guarded, call, give, handles, take};
+use super::border::{Border, Guarded, create, handles, take};
 use super::camera::{self, CameraDescriptor};
-use super::descriptor::{boolean, descriptors, read, slice};
+use super::descriptor::{Descriptor, boolean, descriptors, read, slice, zero};
 use super::renderer::{RendererHandle, RendererState};
 use super::scene::SceneHandle;
 use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, slot_of};
@@ -66,11 +66,13 @@ pub struct FrameDescriptor {
     pub targets: *const TargetDescriptor,
     /// How many.
     pub target_count: usize,
-    /// 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none.
+    /// 1: nothing is copied to the host's memory; irradia_frame_copy() has nothing to copy then, and 0 of `slots` means none. Of `targets` the host reads how many
+    /// pixels are not finite, a word each, and no pixel.
     pub stay_on_device: u32,
     /// How long points are waited for, seconds; 0: 10. A point that is not reached by then is IRRADIA_ERROR_DEVICE, and nothing is signalled.
     pub patience: f32,
-    /// Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are.
+    /// Points that must be reached before targets are touched. What signals them must have been submitted before this call, which blocks until they are, before it
+    /// begins with the frame.
     pub waits: *const SemaphorePoint,
     /// How many.
     pub wait_count: usize,
@@ -135,6 +137,7 @@ impl Progress {
 /// # Safety
 /// The descriptor's pointers are what the header asks for.
 unsafe fn request_of(given: &FrameDescriptor, view: crate::scene::CameraView) -> Result<FrameRequest, Fault> {
+    zero(given.reserved, FrameDescriptor::NAME)?;
     let all = 2 * IRRADIA_SLOT_DISPLAY - 1;
     let stays = boolean(given.stay_on_device, "stay_on_device")?;
     let slots = if given.slots == 0 && !stays { IRRADIA_SLOT_IMAGE } else { given.slots };
@@ -184,8 +187,11 @@ unsafe fn request_of(given: &FrameDescriptor, view: crate::scene::CameraView) ->
 /// What the scene, its lights and the camera leave unchanged since the renderer's last frame is not made again. The scene may belong to another context.
 /// `frame`: receives the frame, which irradia_frame_destroy() ends.
 ///
-/// Errors: IRRADIA_ERROR_ARGUMENT, IRRADIA_ERROR_SCENE for a camera that the scene has not, IRRADIA_ERROR_MEMORY, IRRADIA_ERROR_DEVICE_LOST, IRRADIA_ERROR_CANCELLED.
-/// The renderer can go on after each but a lost device.
+/// Errors: IRRADIA_ERROR_ARGUMENT; IRRADIA_ERROR_SCENE for a camera that the scene has not; IRRADIA_ERROR_SETTINGS for methods that do not go together; IRRADIA_ERROR_DEVICE
+/// for what the device cannot do, a target that cannot be filled and a point that is not reached; IRRADIA_ERROR_MEMORY; IRRADIA_ERROR_DEVICE_LOST; IRRADIA_ERROR_CANCELLED;
+/// IRRADIA_ERROR_INTERNAL if a pixel were not a finite number of at least 0, which is a fault of the library's: its sentence names the pass.
+/// The renderer can go on after each but a lost device and a failure of the library. A frame that failed on its way may have moved on what is kept over frames;
+/// one that was refused, for an argument, a target or a point that is not reached, has not.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn irradia_render(
     renderer: *mut RendererHandle,
@@ -193,7 +199,7 @@ pub unsafe extern "C" fn irradia_render(
     descriptor: *const FrameDescriptor,
     frame: *mut *mut FrameHandle,
 ) -> Status {
-    call(|border| {
+    let make = |border: &mut Border<'_>| {
         // SAFETY: the host's pointers are what the header asks for.
         let (state, scene, given) = unsafe { (border.enter(renderer)?, border.enter(scene)?, read(descriptor)?) };
         let RendererState { renderer, shared, .. } = state;
@@ -215,14 +221,12 @@ pub unsafe extern "C" fn irradia_render(
             }
             _ => {}
         }
-        let make = || {
-            let frame = shared.run(|| renderer.render(scene, &request))?;
-            let texts = FrameTexts::of(&frame);
-            Ok(FrameHandle { guarded: Guarded::new(FrameState { frame, texts }) })
-        };
-        // SAFETY: as above.
-        unsafe { give(frame, make) }
-    })
+        let frame = shared.run(|| renderer.render(scene, &request))?;
+        let texts = FrameTexts::of(&frame);
+        Ok(FrameHandle { guarded: Guarded::new(FrameState { frame, texts }) })
+    };
+    // SAFETY: as above.
+    unsafe { create(frame, make) }
 }
 
 /// Ends a frame. Null is allowed.

@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 use std::sync::Arc;
 
-use super::border::{Guarded, call, give, handles, take};
+use super::border::{Guarded, call, create, handles, take};
 use super::context::{ContextHandle, Shared, shared};
 use super::descriptor::{descriptors, read_optional, write};
 use super::options::{OptionDescriptor, OptionTexts};
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn irradia_renderer_create(
     descriptor: *const RendererDescriptor,
     renderer: *mut *mut RendererHandle,
 ) -> Status {
-    call(|_| {
+    let make = || {
         // SAFETY: the host's pointers are what the header asks for.
         let (shared, given) = unsafe { (shared(context)?, read_optional(descriptor)?) };
         let names = given.map_or([std::ptr::null(); 2], |given| [given.technique, given.preset]);
@@ -66,17 +66,15 @@ pub unsafe extern "C" fn irradia_renderer_create(
         let names = unsafe { [optional_text(names[0], "the technique")?, optional_text(names[1], "the preset")?] };
         let technique = names[0].map_or(Ok(Technique::Hybrid), Technique::from_name).map_err(SettingsError::from)?;
         let preset = names[1].map_or(Ok(Preset::Default), Preset::from_name).map_err(SettingsError::from)?;
-        let make = || {
-            let settings = Settings::new(technique, preset);
-            let options = OptionTexts::all(&settings);
-            let renderer = shared.run(|| Renderer::new(&shared.context, settings))?;
-            let cancel = renderer.cancel();
-            let state = RendererState { renderer, shared, options };
-            Ok(RendererHandle { guarded: Guarded::new(state), cancel })
-        };
-        // SAFETY: as above.
-        unsafe { give(renderer, make) }
-    })
+        let settings = Settings::new(technique, preset);
+        let options = OptionTexts::all(&settings);
+        let renderer = shared.run(|| Renderer::new(&shared.context, settings))?;
+        let cancel = renderer.cancel();
+        let state = RendererState { renderer, shared, options };
+        Ok(RendererHandle { guarded: Guarded::new(state), cancel })
+    };
+    // SAFETY: as above.
+    unsafe { create(renderer, |_| make()) }
 }
 
 /// Ends a renderer and frees what it holds on the device. Null is allowed.

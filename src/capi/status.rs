@@ -31,7 +31,7 @@ pub const IRRADIA_ERROR_VERSION: Status = 7;
 pub const IRRADIA_ERROR_BUSY: Status = 8;
 /// irradia_renderer_cancel() stopped it. The renderer can go on.
 pub const IRRADIA_ERROR_CANCELLED: Status = 9;
-/// A fault of the library's own. The handles of the call refuse to be used from now on; destroy them.
+/// A fault of the library's own. After one that the sentence calls a failure of the library the handles of the call refuse to be used; destroy them.
 pub const IRRADIA_ERROR_INTERNAL: Status = 10;
 
 /// Why a call could not do what it was asked to.
@@ -84,7 +84,8 @@ thread_local! {
 /// What irradia_last_error() says in this thread from now on.
 pub(super) fn remember(sentence: &str) {
     let text = CString::new(sentence.replace('\0', " ")).unwrap_or_default();
-    LAST.with(|last| *last.borrow_mut() = text);
+    // A thread that is ending remembers nothing.
+    let _ = LAST.try_with(|last| *last.borrow_mut() = text);
 }
 
 /// One sentence on the last call of this thread that did not return IRRADIA_OK: what, where, what to do. Empty if there was none. UTF-8.
@@ -92,5 +93,5 @@ pub(super) fn remember(sentence: &str) {
 /// The text stands until the next call of this thread fails; copy what must last longer. From any thread, each has its own.
 #[unsafe(no_mangle)]
 pub extern "C" fn irradia_last_error() -> *const c_char {
-    LAST.with(|last| last.borrow().as_ptr())
+    LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }

@@ -36,7 +36,8 @@ pub struct TargetDescriptor {
     pub is_buffer: u32,
     /// The handle.
     pub resource: u64,
-    /// Of an image, its VkFormat. VK_FORMAT_R32G32B32A32_SFLOAT is copied; others are converted, as vkCmdBlitImage does.
+    /// Of an image, its VkFormat. VK_FORMAT_R32G32B32A32_SFLOAT is copied; other colours in floats, in parts of 1 or in sRGB are converted as vkCmdBlitImage does, if the
+    /// device can.
     pub format: u32,
     /// Of a buffer, pixels from one row to the next; 0: the frame's width.
     pub row_pixels: u32,

@@ -2,8 +2,8 @@
 
 use std::ffi::c_void;
 
-use super::border::{Guarded, call, give, handles, take};
-use super::descriptor::{boolean, descriptors, read, write};
+use super::border::{Guarded, call, create, handles, take};
+use super::descriptor::{Descriptor, boolean, descriptors, read, write, zero};
 use super::status::{Fault, Status};
 use crate::method::Error;
 use crate::renderer::Context;
@@ -52,7 +52,7 @@ pub struct DeviceDescriptor {
     /// The VkPhysicalDeviceFeatures2 of what was enabled, with the structs behind it, as it stood behind VkDeviceCreateInfo; it may be the one of
     /// irradia_requirements_get(). Not needed any more once the call returns.
     pub features: *const c_void,
-    /// Called before each submission to the queue; null: nobody else uses the queue while a call of the library is in progress.
+    /// Called before each submission to the queue; null: nobody else uses the queue while a call of the library is in progress, another context on it included.
     pub lock_queue: QueueFunction,
     /// Called after it.
     pub unlock_queue: QueueFunction,
@@ -99,6 +99,7 @@ handles! {
 unsafe fn host_instance(descriptor: *const InstanceDescriptor) -> Result<HostInstance, Fault> {
     // SAFETY: the caller's.
     let given = unsafe { read(descriptor) }?;
+    zero(given.reserved, InstanceDescriptor::NAME)?;
     let missing = |what: &str| Fault::argument(format!("the instance descriptor has no {what}"));
     let get_instance_proc_addr: AnyFunction =
         given.get_instance_proc_addr.ok_or_else(|| missing("vkGetInstanceProcAddr"))?;
@@ -123,16 +124,13 @@ pub unsafe extern "C" fn irradia_requirements_create(
     instance: *const InstanceDescriptor,
     requirements: *mut *mut RequirementsHandle,
 ) -> Status {
-    call(|_| {
+    let make = || {
         // SAFETY: the host's pointers and handles are what the header asks for.
-        unsafe {
-            let instance = host_instance(instance)?;
-            give(requirements, || {
-                let found = instance.requirements().map_err(Error::from)?;
-                Ok(RequirementsHandle { guarded: Guarded::new(found) })
-            })
-        }
-    })
+        let found = unsafe { host_instance(instance)?.requirements() }.map_err(Error::from)?;
+        Ok(RequirementsHandle { guarded: Guarded::new(found) })
+    };
+    // SAFETY: as above.
+    unsafe { create(requirements, |_| make()) }
 }
 
 /// Fills a descriptor, whose size is set.

@@ -19,17 +19,40 @@ impl Graph<'_> {
 }
 
 impl Store {
-    /// Copies the first layer of the first mip level of each named image into its target; none: black. Waits for the points at first, `patience` seconds at
-    /// most, and until it is done.
+    /// Whether [`Store::hand_out`] will be able to fill all of these, and waits until the points are reached, `patience` seconds at most. What fails here has
+    /// changed nothing.
+    pub(crate) fn prepare_hand_out(
+        &self,
+        targets: impl Iterator<Item = ForeignTarget>,
+        (waits, patience): (&[TimelinePoint], f64),
+    ) -> Result<(), VulkanError> {
+        targets.into_iter().try_for_each(|target| self.recorder.check_target(&target))?;
+        self.recorder.await_points(waits, patience)
+    }
+
+    /// Copies the first layer of the first mip level of each named image into its target; none: black. Waits until it is done.
     pub(crate) fn hand_out(
         &mut self,
         copies: &[(Option<&str>, ForeignTarget)],
         size: [u32; 2],
-        (waits, patience): (&[TimelinePoint], f64),
+        waits: &[TimelinePoint],
         signals: &[TimelinePoint],
     ) -> Result<(), VulkanError> {
-        self.interrupt.check()?;
-        self.recorder.await_points(waits, patience)?;
+        let done = self.record_hand_out(copies, size, waits, signals);
+        if done.is_err() {
+            // The layouts that were noted may never have come about.
+            self.forget();
+        }
+        done
+    }
+
+    fn record_hand_out(
+        &mut self,
+        copies: &[(Option<&str>, ForeignTarget)],
+        size: [u32; 2],
+        waits: &[TimelinePoint],
+        signals: &[TimelinePoint],
+    ) -> Result<(), VulkanError> {
         let need = Need {
             stages: vk::PipelineStageFlags2::ALL_TRANSFER,
             access: vk::AccessFlags2::TRANSFER_READ,

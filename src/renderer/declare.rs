@@ -37,10 +37,11 @@ impl Declared {
 }
 
 impl Declared {
-    /// What the host gets to see: the slots asked for, and the image.
+    /// What somebody outside gets to see: the slots asked for, and the image.
     pub(crate) fn shown(&self, request: &FrameRequest) -> Vec<(String, ImageRef)> {
-        let slots = request.slots.iter().filter_map(|&slot| Some((slot.to_string(), self.slot(slot)?)));
-        slots.chain(self.image.filter(|_| request.image).map(|image| ("image".to_owned(), image))).collect()
+        let slots = Slot::ALL.into_iter().filter(|&slot| request.shows(slot));
+        let slots = slots.filter_map(|slot| Some((slot.to_string(), self.slot(slot)?)));
+        slots.chain(self.image.filter(|_| request.shows_image()).map(|image| ("image".to_owned(), image))).collect()
     }
 }
 

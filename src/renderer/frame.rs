@@ -75,6 +75,24 @@ impl FrameRequest {
         handed || self.image || self.tonemap.is_some()
     }
 
+    /// Whether somebody outside gets to see the sum of all slots.
+    pub(super) fn shows_image(&self) -> bool {
+        #[cfg(feature = "capi")]
+        let handed = self.handed.wants_image();
+        #[cfg(not(feature = "capi"))]
+        let handed = false;
+        handed || self.read_back && self.image
+    }
+
+    /// Whether somebody outside gets to see the slot.
+    pub(super) fn shows(&self, slot: Slot) -> bool {
+        #[cfg(feature = "capi")]
+        let handed = self.handed.shows(slot);
+        #[cfg(not(feature = "capi"))]
+        let handed = false;
+        handed || self.read_back && self.slots.contains(&slot)
+    }
+
     /// Whether the frame needs the slot, by itself or as a part of the image.
     pub(crate) fn wants(&self, slot: Slot) -> bool {
         #[cfg(feature = "capi")]

@@ -15,6 +15,12 @@ pub(super) fn want(graph: &mut Graph<'_>, declared: &Declared, handed: &Handed) 
     handed.targets.iter().map(image).map(|image| image.map(|image| graph.want_for_copy(image))).collect()
 }
 
+/// Before the frame is made: targets that cannot be filled and points that nobody signals leave everything as it was.
+pub(super) fn prepare(store: &Store, handed: &Handed) -> Result<(), VulkanError> {
+    let targets = handed.targets.iter().map(|&(_, target)| target);
+    store.prepare_hand_out(targets, (&handed.waits, handed.patience))
+}
+
 /// Copies them.
 pub(super) fn hand_out(
     store: &mut Store,
@@ -27,5 +33,5 @@ pub(super) fn hand_out(
     }
     let copies = names.iter().zip(&handed.targets).map(|(name, &(_, target))| (name.as_deref(), target));
     let copies: Vec<_> = copies.collect();
-    store.hand_out(&copies, size, (&handed.waits, handed.patience), &handed.signals)
+    store.hand_out(&copies, size, &handed.waits, &handed.signals)
 }

@@ -21,6 +21,10 @@ impl Handed {
         self.targets.iter().any(|(wanted, _)| wanted.is_none_or(|wanted| wanted == slot))
     }
 
+    pub(super) fn shows(&self, slot: Slot) -> bool {
+        self.targets.iter().any(|(wanted, _)| *wanted == Some(slot))
+    }
+
     pub(super) fn wants_image(&self) -> bool {
         self.targets.iter().any(|(wanted, _)| wanted.is_none())
     }

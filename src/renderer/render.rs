@@ -92,6 +92,8 @@ impl Renderer {
     /// pass that finished. A frame that was cancelled.
     pub fn render(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Frame, Error> {
         self.check_request(request)?;
+        #[cfg(feature = "capi")]
+        super::hand_out::prepare(&self.store, &request.handed)?;
         self.store.interrupt.progress = request.progress.clone();
         let start = Instant::now();
         let mut timings = FrameTimings { timing: request.timing, ..FrameTimings::default() };
@@ -168,9 +170,11 @@ impl Renderer {
         let mut slots = Vec::new();
         let mut image = None;
         let mut check = None;
-        if request.read_back {
-            let shown = declared.shown(request);
+        let shown = declared.shown(request);
+        if !shown.is_empty() {
             check = Some((check_images(&mut graph, &shown), shown));
+        }
+        if request.read_back {
             slots = request
                 .slots
                 .iter()

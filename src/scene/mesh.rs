@@ -35,6 +35,20 @@ pub struct Primitive {
     pub source_bytes: u64,
 }
 
+/// Elements that a thread takes at once: enough to be worth its while, and few enough that a near cache holds them.
+pub(crate) const CHUNK: usize = 1 << 13;
+
+/// The first vertex with a number that is not finite.
+pub(crate) fn first_endless<const N: usize>(values: &[[f32; N]]) -> Option<usize> {
+    let endless = |value: &[f32; N]| !value.iter().all(|axis| axis.is_finite());
+    // Of a chunk all numbers at once, without a branch; only one that has such a number is searched.
+    let in_chunk = |(index, chunk): (usize, &[[f32; N]])| {
+        let any = chunk.as_flattened().iter().fold(false, |any, axis| any | !axis.is_finite());
+        if any { chunk.iter().position(endless).map(|vertex| index * CHUNK + vertex) } else { None }
+    };
+    values.par_chunks(CHUNK).enumerate().find_map_first(in_chunk)
+}
+
 impl Primitive {
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
@@ -79,14 +93,14 @@ impl Primitive {
         if let Some(fault) = self.length_fault() {
             return Some(fault);
         }
-        let endless = |position: &[f32; 3]| !position.iter().all(|axis| axis.is_finite());
-        if let Some(vertex) = self.positions.par_iter().position_first(endless) {
+        if let Some(vertex) = first_endless(&self.positions) {
             return Some(format!("the position of vertex {vertex} is not finite"));
         }
         if !self.indices.len().is_multiple_of(3) {
             return Some(format!("{} indices do not make whole triangles", self.indices.len()));
         }
-        let highest = self.indices.par_iter().max().copied();
+        let largest = |indices: &[u32]| indices.iter().fold(0, |largest, &index| largest.max(index));
+        let highest = self.indices.par_chunks(CHUNK).map(largest).max();
         let count = self.positions.len();
         highest
             .filter(|&index| index as usize >= count)

@@ -73,6 +73,8 @@ pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};
 pub use load_options::LoadOptions;
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
+#[cfg(feature = "capi")]
+pub(crate) use mesh::{CHUNK, first_endless};
 pub use world::{FRAME_RATE, Node, Revisions, Scene};
 
 pub(crate) use cutout::{Cutout, cutout};

@@ -121,12 +121,12 @@ impl Device {
     pub(super) fn of_parts(
         (instance, physical, survey): (Instance, vk::PhysicalDevice, Survey),
         (raw, queue): (ash::Device, vk::Queue),
-        (debug_utils, turns): (bool, Option<TakeTurns>),
+        (labels, turns): (Option<ext::debug_utils::Device>, Option<TakeTurns>),
     ) -> Result<Arc<Device>, VulkanError> {
         let allocator = allocator_on(&instance, &raw, physical)?;
         Ok(Arc::new(Device {
             marking: Marking::new(CrashMarkers::default(), None, &instance.raw, &raw),
-            labels: debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &raw)),
+            labels,
             raw,
             physical,
             queue: Mutex::new(queue),

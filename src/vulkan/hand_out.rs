@@ -75,6 +75,40 @@ pub(crate) struct HandOut<'a> {
 
 /// Seconds from a fence to the semaphores that are signalled with it.
 const SIGNALLED_WITHIN: f64 = 10.0;
+/// The format of slots.
+const COPIED: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// Formats that a blit makes of floats: whole numbers and depths are none.
+const CONVERTED: [vk::Format; 29] = [
+    vk::Format::R8_UNORM,
+    vk::Format::R8_SRGB,
+    vk::Format::R8G8_UNORM,
+    vk::Format::R8G8_SRGB,
+    vk::Format::R8G8B8_UNORM,
+    vk::Format::R8G8B8_SRGB,
+    vk::Format::B8G8R8_UNORM,
+    vk::Format::B8G8R8_SRGB,
+    vk::Format::R8G8B8A8_UNORM,
+    vk::Format::R8G8B8A8_SRGB,
+    vk::Format::B8G8R8A8_UNORM,
+    vk::Format::B8G8R8A8_SRGB,
+    vk::Format::A8B8G8R8_UNORM_PACK32,
+    vk::Format::A8B8G8R8_SRGB_PACK32,
+    vk::Format::A2R10G10B10_UNORM_PACK32,
+    vk::Format::A2B10G10R10_UNORM_PACK32,
+    vk::Format::R5G6B5_UNORM_PACK16,
+    vk::Format::R16_UNORM,
+    vk::Format::R16_SFLOAT,
+    vk::Format::R16G16_UNORM,
+    vk::Format::R16G16_SFLOAT,
+    vk::Format::R16G16B16_SFLOAT,
+    vk::Format::R16G16B16A16_UNORM,
+    vk::Format::R16G16B16A16_SFLOAT,
+    vk::Format::R32_SFLOAT,
+    vk::Format::R32G32_SFLOAT,
+    vk::Format::R32G32B32_SFLOAT,
+    vk::Format::B10G11R11_UFLOAT_PACK32,
+    vk::Format::E5B9G9R9_UFLOAT_PACK32,
+];
 const EVERYTHING: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,
@@ -111,6 +145,30 @@ impl Recorder {
         }
     }
 
+    /// Whether pixels can be copied there.
+    ///
+    /// # Errors
+    /// For a format that does not hold radiance, or that the device cannot convert into.
+    pub(crate) fn check_target(&self, target: &ForeignTarget) -> Result<(), VulkanError> {
+        let ForeignPlace::Image { format, .. } = target.place else { return Ok(()) };
+        let format = vk::Format::from_raw(format);
+        if format == COPIED {
+            return Ok(());
+        }
+        if !CONVERTED.contains(&format) {
+            let fault = format!(
+                "an image of VkFormat {} is not one for colours in floats or in parts of 1: it takes no radiance",
+                format.as_raw()
+            );
+            return Err(VulkanError::Host(fault));
+        }
+        self.device.check_draws()?;
+        if self.device.format_features(format).contains(vk::FormatFeatureFlags::BLIT_DST) {
+            return Ok(());
+        }
+        Err(VulkanError::Host(format!("it converts nothing into images of VkFormat {}", format.as_raw())))
+    }
+
     /// Starts a recording that ends in [`Recorder::hand_out`].
     pub(crate) fn begin_hand_out(&mut self) -> Result<(), VulkanError> {
         self.begin(&DescriptorCounts::default())
@@ -123,7 +181,7 @@ impl Recorder {
         waits: &[TimelinePoint],
         signals: &[TimelinePoint],
     ) -> Result<(), VulkanError> {
-        copies.iter().try_for_each(|copy| self.record_hand_out(copy))?;
+        copies.iter().for_each(|copy| self.record_hand_out(copy));
         let infos = |points: &[TimelinePoint]| -> Vec<vk::SemaphoreSubmitInfo<'static>> {
             let info = |point: &TimelinePoint| {
                 vk::SemaphoreSubmitInfo::default()
@@ -138,7 +196,7 @@ impl Recorder {
         self.await_points(signals, SIGNALLED_WITHIN)
     }
 
-    fn record_hand_out(&self, copy: &HandOut<'_>) -> Result<(), VulkanError> {
+    fn record_hand_out(&self, copy: &HandOut<'_>) {
         let ForeignTarget { place, before, after } = copy.to;
         let [width, height] = copy.size;
         let ours = self.device.survey.queue_family;
@@ -171,7 +229,7 @@ impl Recorder {
                     unsafe { self.device.raw.cmd_pipeline_barrier2(self.commands, &info) };
                 };
                 barrier(before, transfer);
-                self.fill_foreign_image(copy.from, image, format, [width, height])?;
+                self.fill_foreign_image(copy.from, image, format, [width, height]);
                 barrier(transfer, after);
             }
             ForeignPlace::Buffer { buffer, offset, row_pixels } => {
@@ -216,7 +274,6 @@ impl Recorder {
                 barrier(transfer, after);
             }
         }
-        Ok(())
     }
 
     fn fill_foreign_image(
@@ -225,16 +282,16 @@ impl Recorder {
         image: vk::Image,
         format: vk::Format,
         [width, height]: [u32; 2],
-    ) -> Result<(), VulkanError> {
+    ) {
         use vk::ImageLayout as Layout;
         let (raw, commands) = (&self.device.raw, self.commands);
         let Some(from) = from else {
             let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
             // SAFETY: the command buffer is recording; the image is in the layout.
             unsafe { raw.cmd_clear_color_image(commands, image, Layout::TRANSFER_DST_OPTIMAL, &black, &[EVERYTHING]) };
-            return Ok(());
+            return;
         };
-        if format == from.info.format {
+        if format == COPIED {
             let regions = [vk::ImageCopy::default()
                 .src_subresource(LAYERS)
                 .dst_subresource(LAYERS)
@@ -242,12 +299,7 @@ impl Recorder {
             let (before, after) = (Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL);
             // SAFETY: as above.
             unsafe { raw.cmd_copy_image(commands, from.raw, before, image, after, &regions) };
-            return Ok(());
-        }
-        self.device.check_draws()?;
-        if !self.device.format_features(format).contains(vk::FormatFeatureFlags::BLIT_DST) {
-            let fault = format!("it converts nothing into images of VkFormat {}", format.as_raw());
-            return Err(VulkanError::Host(fault));
+            return;
         }
         let corner = |side: u32| i32::try_from(side).unwrap_or(i32::MAX);
         let corners = [vk::Offset3D::default(), vk::Offset3D { x: corner(width), y: corner(height), z: 1 }];
@@ -258,9 +310,8 @@ impl Recorder {
             dst_offsets: corners,
         }];
         let (before, after) = (Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL);
-        // SAFETY: as above; the format takes blits.
+        // SAFETY: as above; the format takes blits (`check_target`).
         unsafe { raw.cmd_blit_image(commands, from.raw, before, image, after, &regions, vk::Filter::NEAREST) };
-        Ok(())
     }
 }
 

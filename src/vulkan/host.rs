@@ -2,9 +2,10 @@
 
 #![allow(unsafe_code, reason = "the host's handles")]
 
-use std::ffi::{c_char, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::sync::Arc;
 
+use ash::ext;
 use ash::vk;
 use ash::vk::Handle;
 
@@ -12,6 +13,7 @@ use super::device::{Device, TakeTurns};
 use super::features::Features;
 use super::host_features::FeatureChain;
 use super::instance::Instance;
+use super::loader_lock;
 use super::report::Survey;
 use super::{Validation, VulkanError};
 
@@ -67,10 +69,48 @@ impl Device {
             )));
         }
         survey.take_what_a_host_enabled(&instance, physical, enabled, host.queue_family)?;
+        let walks = loader_lock::walking();
+        let (handle, mut functions) = (vk::Device::from_raw(host.device), LookUp::default());
+        let get_device_proc_addr = instance.raw.fp_v1_0().get_device_proc_addr;
         // SAFETY: the caller's.
-        let raw = unsafe { ash::Device::load(instance.raw.fp_v1_0(), vk::Device::from_raw(host.device)) };
+        let look_up = |name: &CStr| unsafe { get_device_proc_addr(handle, name.as_ptr()) };
+        // SAFETY: as above.
+        let raw = unsafe { ash::Device::load_with(|name| functions.found(name, look_up(name)), handle) };
+        functions.all("device")?;
+        if host.debug_utils && LABELS.iter().any(|name| look_up(name).is_none()) {
+            let fault = "its instance was created without VK_EXT_debug_utils, which debug_utils says that it has";
+            return Err(VulkanError::Host(fault.to_owned()));
+        }
+        let labels = host.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
         let queue = vk::Queue::from_raw(host.queue);
-        Device::of_parts((instance, physical, survey), (raw, queue), (host.debug_utils, host.take_turns))
+        let parts = Device::of_parts((instance, physical, survey), (raw, queue), (labels, host.take_turns));
+        drop(walks);
+        parts
+    }
+}
+
+/// What names of passes and objects are given by.
+const LABELS: [&CStr; 3] =
+    [c"vkSetDebugUtilsObjectNameEXT", c"vkCmdBeginDebugUtilsLabelEXT", c"vkCmdEndDebugUtilsLabelEXT"];
+
+/// Functions as they are looked up. To call one that is not there would end the process.
+#[derive(Default)]
+struct LookUp {
+    missing: Option<String>,
+}
+
+impl LookUp {
+    fn found(&mut self, name: &CStr, function: vk::PFN_vkVoidFunction) -> *const c_void {
+        if function.is_none() {
+            self.missing.get_or_insert_with(|| name.to_string_lossy().into_owned());
+        }
+        function.map_or(std::ptr::null(), |function| function as *const c_void)
+    }
+
+    fn all(self, of: &str) -> Result<(), VulkanError> {
+        self.missing.map_or(Ok(()), |name| {
+            Err(VulkanError::Host(format!("its {of} has no function {name}, which belongs to Vulkan 1.3")))
+        })
     }
 }
 
@@ -96,9 +136,13 @@ impl HostInstance {
                 unsafe extern "system" fn(vk::Instance, *const c_char) -> vk::PFN_vkVoidFunction,
             >(self.get_instance_proc_addr)
         };
-        let functions = ash::StaticFn { get_instance_proc_addr };
+        let _walks = loader_lock::walking();
+        let (handle, mut functions) = (vk::Instance::from_raw(self.instance), LookUp::default());
         // SAFETY: the caller's.
-        let raw = unsafe { ash::Instance::load(&functions, vk::Instance::from_raw(self.instance)) };
+        let look_up = |name: &CStr| unsafe { get_instance_proc_addr(handle, name.as_ptr()) };
+        // SAFETY: as above.
+        let raw = unsafe { ash::Instance::load_with(|name| functions.found(name, look_up(name)), handle) };
+        functions.all("instance")?;
         Ok((Instance::of_host(raw, debug), vk::PhysicalDevice::from_raw(self.physical_device)))
     }
 

@@ -131,7 +131,7 @@ static void check_built_scene(irradia_context *context) {
     irradia_frame_descriptor wanted = {.size = sizeof wanted};
     irradia_renderer_descriptor chosen = {.size = sizeof chosen};
     irradia_primitive_descriptor primitive;
-    irradia_id material_id, texture_id, light_id, mesh_id, floor_id, lamp_id, found;
+    irradia_id material_id, texture_id, light_id, mesh_id, floor_id, lamp_id, camera_id, found;
     static const unsigned char white[4] = {255, 255, 255, 255};
     double lamp[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 2, 0, 1};
     const float sky[3] = {0, 0, 0};
@@ -188,6 +188,31 @@ static void check_built_scene(irradia_context *context) {
     bright = mean(frame, IRRADIA_SLOT_DIRECT);
     CHECK(fabs(bright - 10.0 / 4.0 / 3.14159265) < 2e-3);
     irradia_frame_destroy(frame);
+
+    /* The same by a camera of the scene, where the lamp is. */
+    memset(camera.world_from_camera, 0, sizeof camera.world_from_camera);
+    OK(irradia_scene_add_camera(scene, "above", &camera, &camera_id));
+    camera.half_width *= 2;
+    camera.half_height *= 2;
+    OK(irradia_scene_set_camera(scene, camera_id, "above", &camera));
+    camera.half_width /= 2;
+    camera.half_height /= 2;
+    OK(irradia_scene_set_camera(scene, camera_id, "above", &camera));
+    node.name = "eye";
+    node.light = 0;
+    node.parent = lamp_id;
+    node.camera = camera_id;
+    memset(node.local, 0, sizeof node.local);
+    OK(irradia_scene_add_node(scene, &node, NULL));
+    OK(irradia_scene_camera(scene, "above", &camera));
+    CHECK(camera.world_from_camera[13] == 2 && camera.half_width == 0.04);
+    wanted.camera = NULL;
+    wanted.camera_name = "above";
+    OK(irradia_render(renderer, scene, &wanted, &frame));
+    CHECK(mean(frame, IRRADIA_SLOT_DIRECT) == bright);
+    irradia_frame_destroy(frame);
+    wanted.camera = &camera;
+    wanted.camera_name = NULL;
 
     /* The lamp goes up to twice its height. */
     lamp[13] = 4;
@@ -337,17 +362,19 @@ static void check_all(const char *path) {
     wanted.progress = NULL;
     OK(irradia_renderer_cancel(renderer));
     FAILS(IRRADIA_ERROR_CANCELLED, irradia_render(renderer, scene, &wanted, &frame));
-    OK(irradia_renderer_reset_history(renderer));
-    OK(irradia_renderer_invalidate(renderer));
-    OK(irradia_render(renderer, scene, &wanted, &frame));
-    target.byte_count = sizeof pixels;
-    {
+    for (i = 0; i < 2; ++i) {
         static float again[WIDTH * HEIGHT * 3];
+        if (i == 1) {
+            OK(irradia_renderer_reset_history(renderer));
+            OK(irradia_renderer_invalidate(renderer));
+        }
+        OK(irradia_render(renderer, scene, &wanted, &frame));
         target.pixels = again;
+        memset(again, 0, sizeof again);
         OK(irradia_frame_copy(frame, &target));
         CHECK(memcmp(again, pixels, sizeof pixels) == 0);
+        irradia_frame_destroy(frame);
     }
-    irradia_frame_destroy(frame);
     irradia_scene_destroy(scene);
 
     check_built_scene(context);
@@ -414,6 +441,20 @@ static void check_wrong(void) {
     } older;
 
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_context_create(NULL, NULL));
+    /* What could not be made is null, or 0, whatever stood there. */
+    scene = (irradia_scene *)&context;
+    renderer = (irradia_renderer *)&context;
+    frame = (irradia_frame *)&context;
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_open(NULL, NULL, NULL, &scene));
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_renderer_create(NULL, NULL, &renderer));
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_render(NULL, NULL, NULL, &frame));
+    CHECK(scene == NULL && renderer == NULL && frame == NULL);
+    scene = (irradia_scene *)&context;
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_from_bytes(NULL, NULL, NULL, &scene));
+    CHECK(scene == NULL);
+    scene = (irradia_scene *)&context;
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_create(NULL, "\xff", &scene));
+    CHECK(scene == NULL);
     device.size = 3;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_context_create(&device, &other));
     CHECK(other == NULL);
@@ -454,7 +495,9 @@ static void check_wrong(void) {
     /* Materials, textures, lights */
     OK(irradia_material_default(&material));
     material.roughness = NAN;
+    id = 77;
     FAILS(IRRADIA_ERROR_SCENE, irradia_scene_add_material(scene, &material, &id));
+    CHECK(id == 0);
     OK(irradia_material_default(&material));
     material.normal_texture.texture = 5;
     FAILS(IRRADIA_ERROR_SCENE, irradia_scene_add_material(scene, &material, &id));
@@ -475,6 +518,9 @@ static void check_wrong(void) {
     texture.wrap[1] = 0;
     texture.row_stride = 3;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_add_texture(scene, &texture, NULL));
+    light.reserved = 1;
+    FAILS(IRRADIA_ERROR_VERSION, irradia_scene_add_light(scene, &light, NULL));
+    light.reserved = 0;
     light.kind = 7;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_add_light(scene, &light, NULL));
     light.kind = IRRADIA_LIGHT_SPOT;
@@ -504,6 +550,9 @@ static void check_wrong(void) {
     primitive.positions.format = IRRADIA_FORMAT_UNORM8;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_add_mesh(scene, &mesh, &mesh_id));
     primitive = floor_primitive(1);
+    primitive.colors.reserved = 5;
+    FAILS(IRRADIA_ERROR_VERSION, irradia_scene_add_mesh(scene, &mesh, &mesh_id));
+    primitive = floor_primitive(1);
     primitive.positions.stride = 4;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_add_mesh(scene, &mesh, &mesh_id));
     primitive = floor_primitive(1);
@@ -515,6 +564,14 @@ static void check_wrong(void) {
     floor_vertices[2].position[0] = 1;
     OK(irradia_scene_add_mesh(scene, &mesh, &mesh_id));
     FAILS(IRRADIA_ERROR_SCENE, irradia_scene_set_mesh(scene, 2, &mesh));
+    camera.world_from_camera[0] = 1;
+    FAILS(IRRADIA_ERROR_ARGUMENT, irradia_scene_add_camera(scene, NULL, &camera, &id));
+    camera.world_from_camera[0] = 0;
+    FAILS(IRRADIA_ERROR_SCENE, irradia_scene_add_camera(scene, NULL, &camera, &id));
+    FAILS(IRRADIA_ERROR_SCENE, irradia_scene_set_camera(scene, 1, NULL, &camera));
+    node.camera = 1;
+    FAILS(IRRADIA_ERROR_SCENE, irradia_scene_add_node(scene, &node, NULL));
+    node.camera = 0;
     node.mesh = 3;
     FAILS(IRRADIA_ERROR_SCENE, irradia_scene_add_node(scene, &node, NULL));
     node.mesh = mesh_id;
@@ -582,9 +639,15 @@ static void check_wrong(void) {
     camera.near = NAN;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_render(renderer, scene, &wanted, &frame));
     camera.near = 0.1;
+    camera.reserved = 1;
+    FAILS(IRRADIA_ERROR_VERSION, irradia_render(renderer, scene, &wanted, &frame));
+    camera.reserved = 0;
     camera.projection = 5;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_render(renderer, scene, &wanted, &frame));
     camera.projection = 0;
+    wanted.reserved = 1;
+    FAILS(IRRADIA_ERROR_VERSION, irradia_render(renderer, scene, &wanted, &frame));
+    wanted.reserved = 0;
     wanted.width = 1u << 30;
     FAILS(IRRADIA_ERROR_ARGUMENT, irradia_render(renderer, scene, &wanted, &frame));
     wanted.width = 2;

@@ -340,6 +340,20 @@ void read_images(const char *path, const Image &image, const Buffer &doubled, co
     CALL(vkDestroyShaderModule)(device, shader, nullptr);
 }
 
+// Vulkan without one of its functions.
+std::string left_out;
+
+PFN_vkVoidFunction VKAPI_CALL fewer_device_functions(VkDevice of, const char *name) {
+    return left_out == name ? nullptr : CALL(vkGetDeviceProcAddr)(of, name);
+}
+
+PFN_vkVoidFunction VKAPI_CALL fewer_functions(VkInstance of, const char *name) {
+    if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) {
+        return reinterpret_cast<PFN_vkVoidFunction>(fewer_device_functions);
+    }
+    return left_out == name ? nullptr : get_instance_proc_addr(of, name);
+}
+
 irradia_device_descriptor described_device(const irradia_instance_descriptor &on, const void *features) {
     irradia_device_descriptor described{};
     described.size = sizeof described;
@@ -474,6 +488,11 @@ void show(const char *shader, const char *output, const irradia_device_descripto
     wanted.patience = 0.01f;
     CHECK(irradia_render(renderer, scene, &wanted, &frame) == IRRADIA_ERROR_DEVICE);
     wanted.wait_count = wanted.signal_count = 0;
+    for (const VkFormat format : {VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_D32_SFLOAT, VK_FORMAT_BC1_RGB_UNORM_BLOCK}) {
+        targets[1].format = format;
+        CHECK(irradia_render(renderer, scene, &wanted, &frame) == IRRADIA_ERROR_DEVICE);
+    }
+    targets[1].format = VK_FORMAT_R16G16B16A16_SFLOAT;
     targets[0].before = targets[0].after;
     targets[1].before = targets[1].after;
     OK(irradia_render(renderer, scene, &wanted, &frame));
@@ -550,6 +569,18 @@ int main(int count, char **arguments) {
     lent.unlock_queue = unlock_queue;
     wanted.device = "0";
     CHECK(irradia_context_create(&wanted, &context) == IRRADIA_ERROR_ARGUMENT);
+    wanted.device = nullptr;
+    irradia_instance_descriptor fewer = on;
+    fewer.get_instance_proc_addr = reinterpret_cast<irradia_void_function>(fewer_functions);
+    lent.instance = &fewer;
+    lent.debug_utils = 1;
+    for (const char *name : {"vkGetPhysicalDeviceProperties2", "vkCmdDispatch", "vkSetDebugUtilsObjectNameEXT"}) {
+        left_out = name;
+        CHECK(irradia_context_create(&wanted, &context) == IRRADIA_ERROR_DEVICE && context == nullptr);
+        const std::string said = irradia_last_error();
+        CHECK(said.find(name) != std::string::npos || said.find("VK_EXT_debug_utils") != std::string::npos);
+    }
+    lent = described_device(on, needs.features);
 
     show(arguments[1], arguments[2], lent);
     CHECK(turns > 2);

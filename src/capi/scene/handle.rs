@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::super::border::{Guarded, give, handles};
+use super::super::border::{Guarded, call, create, handles};
 use super::super::context::{ContextHandle, Shared, shared};
-use super::super::status::Fault;
+use super::super::status::{Fault, Status};
 use crate::scene::Scene;
 
 /// Names a thing in a scene: 1 for the first of its kind, 2 for the second. 0: none.
@@ -37,33 +37,49 @@ handles! {
 }
 
 /// Index of what an identifier names.
-pub(super) fn index_of(id: Id, what: &str) -> Result<usize, Fault> {
+pub(in crate::capi) fn index_of(id: Id, what: &str) -> Result<usize, Fault> {
     let index =
         id.checked_sub(1).ok_or_else(|| Fault::argument(format!("the {what}'s identifier is 0, which names none")))?;
     Ok(index as usize)
 }
 
-/// Identifier of a new thing.
+/// The whole of a call that adds something to a scene: `add` returns its index.
 ///
 /// # Safety
-/// `id` is null or may be written to.
-pub(super) unsafe fn give_id(id: *mut Id, index: usize) {
-    if !id.is_null() {
+/// `scene` is null, which is a fault, or alive; `id` is null or may be written to.
+pub(in crate::capi) unsafe fn add(
+    scene: *mut SceneHandle,
+    id: *mut Id,
+    add: impl FnOnce(&mut SceneState) -> Result<usize, Fault>,
+) -> Status {
+    call(|border| {
+        let give = |number: u32| {
+            if !id.is_null() {
+                // SAFETY: the caller's.
+                unsafe { id.write(number) };
+            }
+        };
+        // What could not be added is none.
+        give(0);
         // SAFETY: the caller's.
-        unsafe { id.write(u32::try_from(index + 1).unwrap_or(u32::MAX)) };
-    }
+        let index = add(unsafe { border.enter(scene) }?)?;
+        give(u32::try_from(index + 1).unwrap_or(u32::MAX));
+        Ok(())
+    })
 }
 
+/// The whole of a call that makes a scene, on the context's threads.
+///
 /// # Safety
-/// `context` is null or alive; `scene` as `give` wants it.
-pub(super) unsafe fn give_scene(
+/// `context` is null or alive; `scene` as `create` wants it.
+pub(super) unsafe fn create_scene(
     context: *const ContextHandle,
     scene: *mut *mut SceneHandle,
     make: impl FnOnce() -> Result<Scene, Fault> + Send,
-) -> Result<(), Fault> {
-    // SAFETY: the caller's.
-    let shared = if context.is_null() { None } else { Some(unsafe { shared(context) }?) };
+) -> Status {
     let make = || {
+        // SAFETY: the caller's.
+        let shared = if context.is_null() { None } else { Some(unsafe { shared(context) }?) };
         let scene = match &shared {
             Some(shared) => shared.run(make),
             None => make(),
@@ -71,5 +87,5 @@ pub(super) unsafe fn give_scene(
         Ok(SceneHandle { guarded: Guarded::new(SceneState { scene: scene?, shared }) })
     };
     // SAFETY: the caller's.
-    unsafe { give(scene, make) }
+    unsafe { create(scene, |_| make()) }
 }

@@ -3,10 +3,10 @@
 use std::ffi::c_char;
 
 use super::super::border::call;
-use super::super::descriptor::{descriptors, read};
+use super::super::descriptor::{Descriptor, descriptors, read, zero};
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
-use super::handle::{Id, SceneHandle, give_id, index_of};
+use super::handle::{Id, SceneHandle, add, index_of};
 use crate::scene::{Light, LightId, LightKind};
 
 /// Shines alike in all directions; intensity in W/sr.
@@ -47,6 +47,7 @@ descriptors! {
 unsafe fn light(descriptor: *const LightDescriptor) -> Result<Light, Fault> {
     // SAFETY: the caller's.
     let given = unsafe { read(descriptor) }?;
+    zero(given.reserved, LightDescriptor::NAME)?;
     let kind = match given.kind {
         IRRADIA_LIGHT_POINT => LightKind::Point,
         IRRADIA_LIGHT_SPOT => LightKind::Spot { inner_angle: given.inner_angle, outer_angle: given.outer_angle },
@@ -73,14 +74,8 @@ pub unsafe extern "C" fn irradia_scene_add_light(
     descriptor: *const LightDescriptor,
     id: *mut Id,
 ) -> Status {
-    call(|border| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let (state, light) = unsafe { (border.enter(scene)?, light(descriptor)?) };
-        let LightId(index) = state.scene.add_light(light)?;
-        // SAFETY: as above.
-        unsafe { give_id(id, index) };
-        Ok(())
-    })
+    // SAFETY: the host's pointers are what the header asks for.
+    unsafe { add(scene, id, |state| Ok(state.scene.add_light(light(descriptor)?)?.0)) }
 }
 
 /// Replaces a light. One that stays the same costs nothing in the next frame.

@@ -3,12 +3,11 @@
 use std::ffi::{CString, c_char, c_void};
 use std::sync::{Mutex, PoisonError};
 
-use super::super::border::call;
 use super::super::context::ContextHandle;
 use super::super::descriptor::{boolean, descriptors, read, read_optional, slice};
 use super::super::status::{Fault, Status};
 use super::super::text::{optional_text, text};
-use super::handle::{SceneHandle, give_scene};
+use super::handle::{SceneHandle, create_scene};
 use crate::scene::{LoadOptions, Scene};
 
 /// What loading may do. Zeros are the defaults, which are safe for scenes of unknown origin.
@@ -100,12 +99,10 @@ pub unsafe extern "C" fn irradia_scene_open(
     load: *const LoadDescriptor,
     scene: *mut *mut SceneHandle,
 ) -> Status {
-    call(|_| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let (name, options) = unsafe { (text(name_or_path, "the scene's name")?, load_options(load)?) };
-        // SAFETY: as above.
-        unsafe { give_scene(context, scene, || Ok(Scene::open_with(name, &options)?)) }
-    })
+    // SAFETY: the host's pointers are what the header asks for.
+    let given = unsafe { (text(name_or_path, "the scene's name"), load_options(load)) };
+    // SAFETY: as above.
+    unsafe { create_scene(context, scene, move || Ok(Scene::open_with(given.0?, &given.1?)?)) }
 }
 
 /// Reads a scene from the bytes of a .gltf or .glb file, and the files that it names through the host.
@@ -118,32 +115,37 @@ pub unsafe extern "C" fn irradia_scene_from_bytes(
     load: *const LoadDescriptor,
     scene: *mut *mut SceneHandle,
 ) -> Status {
-    call(|_| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let (source, options) = unsafe { (read(source)?, load_options(load)?) };
-        // SAFETY: as above.
-        let name = unsafe { optional_text(source.name, "the scene's name") }?.unwrap_or("scene");
-        // SAFETY: as above.
-        let bytes = unsafe { slice(source.bytes.cast::<u8>(), source.byte_count, "the scene's bytes") }?;
-        let files = Mutex::new(HostFiles { read: source.read, user: source.read_user });
+    // SAFETY: the host's pointers are what the header asks for.
+    let given = unsafe { (given_bytes(source), load_options(load)) };
+    let make = move || {
+        let (GivenBytes { name, bytes, files }, options) = (given.0?, given.1?);
+        let files = files.map(Mutex::new);
+        let Some(files) = &files else { return Ok(Scene::from_bytes_with(name, bytes, None, &options)?) };
         let read = |uri: &str| files.lock().unwrap_or_else(PoisonError::into_inner).read(uri, options.file_bytes);
-        let make = || match source.has_files() {
-            true => Ok(Scene::from_bytes_by(name, bytes, &read, &options)?),
-            false => Ok(Scene::from_bytes_with(name, bytes, None, &options)?),
-        };
-        // SAFETY: as above.
-        unsafe { give_scene(context, scene, make) }
-    })
+        Ok(Scene::from_bytes_by(name, bytes, &read, &options)?)
+    };
+    // SAFETY: as above.
+    unsafe { create_scene(context, scene, make) }
 }
 
-impl SceneBytes {
-    fn has_files(&self) -> bool {
-        self.read.is_some()
-    }
+struct GivenBytes<'a> {
+    name: &'a str,
+    bytes: &'a [u8],
+    files: Option<HostFiles>,
 }
 
-// SAFETY: the header says that its pointers are used from threads of the library's own.
-unsafe impl Sync for SceneBytes {}
+/// # Safety
+/// `source` is null, which is a fault, or what the header asks for.
+unsafe fn given_bytes<'a>(source: *const SceneBytes) -> Result<GivenBytes<'a>, Fault> {
+    // SAFETY: the caller's.
+    let source = unsafe { read(source) }?;
+    // SAFETY: as above.
+    let name = unsafe { optional_text(source.name, "the scene's name") }?.unwrap_or("scene");
+    // SAFETY: as above.
+    let bytes = unsafe { slice(source.bytes.cast::<u8>(), source.byte_count, "the scene's bytes") }?;
+    let files = source.read.is_some().then_some(HostFiles { read: source.read, user: source.read_user });
+    Ok(GivenBytes { name, bytes, files })
+}
 
 struct HostFiles {
     read: ReadFunction,

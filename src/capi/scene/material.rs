@@ -6,7 +6,7 @@ use super::super::border::call;
 use super::super::descriptor::{boolean, descriptors, read, write};
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
-use super::handle::{Id, SceneHandle, give_id, index_of};
+use super::handle::{Id, SceneHandle, add, index_of};
 use crate::scene::{Alpha, Material, MaterialId, TextureId, TextureRef};
 
 /// One use of a texture.
@@ -202,14 +202,8 @@ pub unsafe extern "C" fn irradia_scene_add_material(
     descriptor: *const MaterialDescriptor,
     id: *mut Id,
 ) -> Status {
-    call(|border| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let (state, material) = unsafe { (border.enter(scene)?, material(descriptor)?) };
-        let MaterialId(index) = state.scene.add_material(material)?;
-        // SAFETY: as above.
-        unsafe { give_id(id, index) };
-        Ok(())
-    })
+    // SAFETY: the host's pointers are what the header asks for.
+    unsafe { add(scene, id, |state| Ok(state.scene.add_material(material(descriptor)?)?.0)) }
 }
 
 /// Fills a descriptor, whose size is set, with a material of the scene, to be changed and set again.

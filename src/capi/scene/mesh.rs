@@ -5,11 +5,11 @@ use std::ffi::{c_char, c_void};
 use rayon::prelude::*;
 
 use super::super::border::call;
-use super::super::descriptor::{Descriptor, descriptors, read, slice};
+use super::super::descriptor::{Descriptor, descriptors, read, slice, zero};
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
-use super::handle::{Id, SceneHandle, SceneState, give_id, index_of};
-use crate::scene::{MaterialId, Mesh, MeshId, Primitive};
+use super::handle::{Id, SceneHandle, SceneState, add, index_of};
+use crate::scene::{CHUNK, MaterialId, Mesh, MeshId, Primitive, first_endless};
 
 /// 32-bit floats.
 pub const IRRADIA_FORMAT_FLOAT32: u32 = 0;
@@ -57,7 +57,8 @@ pub struct PrimitiveDescriptor {
     pub positions: VertexAttribute,
     /// x, y, z; made unit vectors. Without them triangles are flat.
     pub normals: VertexAttribute,
-    /// x, y, z along +u, and ±1: the bitangent is that times normal × tangent. Where a normal texture needs them and they are not given, they are made.
+    /// x, y, z along +u, and ±1: the bitangent is that times normal × tangent. Where a normal texture needs them and they are not given, they are made. They are kept
+    /// where the material has a normal texture when the mesh is given: set the material first, or the mesh again.
     pub tangents: VertexAttribute,
     /// u, v of the sets 0 and 1; v grows downwards in the image.
     pub texcoords: [VertexAttribute; 2],
@@ -94,6 +95,7 @@ unsafe fn vertices<const N: usize>(
     what: &str,
     formats: &[u32],
 ) -> Result<Option<Vec<[f32; N]>>, Fault> {
+    zero(attribute.reserved, what)?;
     if attribute.data.is_null() || count == 0 {
         return Ok(None);
     }
@@ -120,15 +122,22 @@ unsafe fn vertices<const N: usize>(
     };
     let number = width / N;
     if attribute.format == IRRADIA_FORMAT_FLOAT32 && stride == width {
-        return Ok(Some(bytemuck::pod_collect_to_vec(bytes)));
+        return Ok(Some(copied(bytes)));
     }
     let vertex = |vertex: &[u8]| std::array::from_fn(|axis| value(&vertex[axis * number..]));
     Ok(Some(bytes.par_chunks(stride).map(vertex).collect()))
 }
 
+/// All values in their order, on all threads: what takes longest is that the system hands out fresh memory.
+fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8]) -> Vec<T> {
+    let mut values: Vec<T> = bytemuck::zeroed_vec(bytes.len() / size_of::<T>());
+    let (chunks, parts) = (values.par_chunks_mut(CHUNK), bytes.par_chunks(CHUNK * size_of::<T>()));
+    chunks.zip(parts).for_each(|(values, bytes)| bytemuck::cast_slice_mut(values).copy_from_slice(bytes));
+    values
+}
+
 fn check_finite<const N: usize>(values: Option<&Vec<[f32; N]>>, what: &str) -> Result<(), Fault> {
-    let bad =
-        values.and_then(|values| values.par_iter().position_first(|value| !value.iter().all(|axis| axis.is_finite())));
+    let bad = values.and_then(|values| first_endless(values));
     bad.map_or(Ok(()), |vertex| Err(Fault::argument(format!("{what} of vertex {vertex} are not finite"))))
 }
 
@@ -146,7 +155,8 @@ unsafe fn primitive(given: &PrimitiveDescriptor) -> Result<Primitive, Fault> {
         (true, _) => (0..vertex_count).collect(),
         (_, IRRADIA_INDEX_UINT32) => {
             // SAFETY: the caller's.
-            unsafe { slice(given.indices.cast::<u32>(), given.index_count, "indices") }?.to_vec()
+            let long = unsafe { slice(given.indices.cast::<u32>(), given.index_count, "indices") }?;
+            copied(bytemuck::cast_slice(long))
         }
         (_, IRRADIA_INDEX_UINT16) => {
             // SAFETY: the caller's.
@@ -236,16 +246,13 @@ pub unsafe extern "C" fn irradia_scene_add_mesh(
     descriptor: *const MeshDescriptor,
     id: *mut Id,
 ) -> Status {
-    call(|border| {
+    let copy = |state: &mut SceneState| {
         // SAFETY: the host's pointers are what the header asks for.
-        let state = unsafe { border.enter(scene) }?;
-        // SAFETY: as above.
         let mesh = unsafe { mesh(state, descriptor) }?;
-        let MeshId(index) = state.work(|scene| scene.add_host_mesh(mesh))?;
-        // SAFETY: as above.
-        unsafe { give_id(id, index) };
-        Ok(())
-    })
+        Ok(state.work(|scene| scene.add_host_mesh(mesh))?.0)
+    };
+    // SAFETY: as above.
+    unsafe { add(scene, id, copy) }
 }
 
 /// Replaces a mesh wherever it stands, for instance by one whose vertices moved. It has as many primitives as before; anything else may differ.

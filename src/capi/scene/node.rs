@@ -7,8 +7,8 @@ use super::super::descriptor::{descriptors, read, slice};
 use super::super::matrix::affine;
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
-use super::handle::{Id, SceneHandle, give_id, index_of};
-use crate::scene::{LightId, MeshId, Node, NodeId};
+use super::handle::{Id, SceneHandle, SceneState, add, index_of};
+use crate::scene::{CameraId, LightId, MeshId, Node, NodeId};
 
 /// A place in the scene, and what stands there.
 #[derive(Clone, Copy)]
@@ -24,8 +24,8 @@ pub struct NodeDescriptor {
     pub mesh: Id,
     /// The light that shines from here along -Z; 0: none.
     pub light: Id,
-    /// Zero.
-    pub reserved: u32,
+    /// The camera that looks from here along -Z; 0: none.
+    pub camera: Id,
     /// Node space to parent space, metres: 4×4, column after column, the last row 0 0 0 1. All zero: the identity.
     pub local: [f64; 16],
 }
@@ -49,9 +49,9 @@ pub unsafe extern "C" fn irradia_scene_add_node(
     descriptor: *const NodeDescriptor,
     id: *mut Id,
 ) -> Status {
-    call(|border| {
+    let place = |state: &mut SceneState| {
         // SAFETY: the host's pointers are what the header asks for.
-        let (state, given) = unsafe { (border.enter(scene)?, read(descriptor)?) };
+        let given = unsafe { read(descriptor) }?;
         // SAFETY: as above.
         let name = unsafe { optional_text(given.name, "the node's name") }?.unwrap_or_default().to_owned();
         let node = Node {
@@ -60,13 +60,12 @@ pub unsafe extern "C" fn irradia_scene_add_node(
             local: affine(&given.local, "the node's matrix")?,
             mesh: optional(given.mesh).map(MeshId),
             light: optional(given.light).map(LightId),
-            camera: None,
+            camera: optional(given.camera).map(CameraId),
         };
-        let NodeId(index) = state.scene.add_node(node)?;
-        // SAFETY: as above.
-        unsafe { give_id(id, index) };
-        Ok(())
-    })
+        Ok(state.scene.add_node(node)?.0)
+    };
+    // SAFETY: as above.
+    unsafe { add(scene, id, place) }
 }
 
 /// Moves nodes, and with them all that hangs below them. What stays where it is costs nothing in the next frame; where render space has its zero, and how large

@@ -2,12 +2,11 @@
 
 use std::ffi::{c_char, c_void};
 
-use super::super::border::call;
 use super::super::descriptor::{boolean, descriptors, read, slice};
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
-use super::handle::{Id, SceneHandle, give_id};
-use crate::scene::{Texture, TextureId, Wrap};
+use super::handle::{Id, SceneHandle, SceneState, add};
+use crate::scene::{Texture, Wrap};
 
 /// Outside 0 to 1 the texture starts again.
 pub const IRRADIA_WRAP_REPEAT: u32 = 0;
@@ -62,9 +61,9 @@ pub unsafe extern "C" fn irradia_scene_add_texture(
     descriptor: *const TextureDescriptor,
     id: *mut Id,
 ) -> Status {
-    call(|border| {
+    let copy = |state: &mut SceneState| {
         // SAFETY: the host's pointers are what the header asks for.
-        let (state, given) = unsafe { (border.enter(scene)?, read(descriptor)?) };
+        let given = unsafe { read(descriptor) }?;
         // SAFETY: as above.
         let name = unsafe { optional_text(given.name, "the texture's name") }?.unwrap_or_default().to_owned();
         let (row, rows) = (4 * given.width as usize, given.height as usize);
@@ -86,9 +85,8 @@ pub unsafe extern "C" fn irradia_scene_add_texture(
             nearest: boolean(given.nearest, "nearest")?,
             srgb: boolean(given.srgb, "srgb")?,
         };
-        let TextureId(index) = state.scene.add_texture(texture)?;
-        // SAFETY: as above.
-        unsafe { give_id(id, index) };
-        Ok(())
-    })
+        Ok(state.scene.add_texture(texture)?.0)
+    };
+    // SAFETY: as above.
+    unsafe { add(scene, id, copy) }
 }

@@ -7,7 +7,7 @@ use super::super::context::ContextHandle;
 use super::super::descriptor::slice;
 use super::super::status::{Fault, Status};
 use super::super::text::{self, optional_text, text};
-use super::handle::{Id, SceneHandle, give_scene, index_of};
+use super::handle::{Id, SceneHandle, create_scene, index_of};
 use crate::scene::Scene;
 
 /// Meshes.
@@ -36,12 +36,10 @@ pub unsafe extern "C" fn irradia_scene_create(
     name: *const c_char,
     scene: *mut *mut SceneHandle,
 ) -> Status {
-    call(|_| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let name = unsafe { optional_text(name, "the scene's name") }?.unwrap_or("scene");
-        // SAFETY: as above.
-        unsafe { give_scene(context, scene, || Ok(Scene::empty(name))) }
-    })
+    // SAFETY: the host's pointers are what the header asks for.
+    let name = unsafe { optional_text(name, "the scene's name") };
+    // SAFETY: as above.
+    unsafe { create_scene(context, scene, move || Ok(Scene::empty(name?.unwrap_or("scene")))) }
 }
 
 /// Ends a scene. What a renderer keeps of it stays on the device until the renderer shows another one or is destroyed. Null is allowed.
