@@ -16,6 +16,7 @@ mod live_shaders;
 mod no_vulkan;
 mod output_files;
 mod scene;
+mod scene_changes;
 mod scene_fuzz;
 mod settings;
 mod shared_scenes;
