@@ -10,7 +10,7 @@ use super::matrix::affine;
 use super::scene::{Id, SceneHandle, add, index_of};
 use super::status::{Fault, Status};
 use super::text::optional_text;
-use crate::scene::{Camera, CameraId, CameraView, Projection, Scene};
+use crate::scene::{Camera, CameraId, CameraView, Projection};
 
 /// Central projection by its vertical angle.
 pub const IRRADIA_PROJECTION_PERSPECTIVE: u32 = 0;
@@ -116,22 +116,13 @@ fn by_matrix(given: &CameraDescriptor, aspect: Option<f64>) -> Result<Projection
     }
 }
 
-/// The scene's own camera of a name, or the one that the descriptor has.
+/// The camera that a descriptor has, if there is one.
 ///
 /// # Safety
-/// The pointers are what the header asks for.
-pub(super) unsafe fn choose(
-    scene: &Scene,
-    camera: *const CameraDescriptor,
-    name: *const c_char,
-    size: [u32; 2],
-) -> Result<CameraView, Fault> {
+/// `camera` is null or a descriptor.
+pub(super) unsafe fn given(camera: *const CameraDescriptor, size: [u32; 2]) -> Result<Option<CameraView>, Fault> {
     // SAFETY: the caller's.
-    match unsafe { (read_optional(camera)?, optional_text(name, "the camera's name")?) } {
-        (Some(_), Some(_)) => Err(Fault::argument("the frame has both a camera and the name of one")),
-        (Some(given), None) => view(&given, size),
-        (None, name) => Ok(scene.camera_view(name)?),
-    }
+    unsafe { read_optional(camera) }?.map(|given| view(&given, size)).transpose()
 }
 
 /// Fills a descriptor, whose size is set, with a camera of the scene.

@@ -5,12 +5,12 @@ use std::ffi::{CString, c_char, c_void};
 use super::border::{Border, Guarded, create, handles, take};
 use super::camera::{self, CameraDescriptor};
 use super::descriptor::{Descriptor, boolean, descriptors, read, slice, zero};
-use super::renderer::{RendererHandle, RendererState};
+use super::renderer::{RendererHandle, RendererState, Shown};
 use super::scene::SceneHandle;
-use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, slot_of};
+use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, bit_of, slot_of};
 use super::status::{Fault, Status};
 use super::targets::{SemaphorePoint, TargetDescriptor, points, targets};
-use super::text::owned;
+use super::text::{optional_text, owned};
 use crate::image::ToneMap;
 use crate::renderer::{Frame, FrameRequest, Handed, Timing};
 
@@ -202,11 +202,19 @@ pub unsafe extern "C" fn irradia_render(
     let make = |border: &mut Border<'_>| {
         // SAFETY: the host's pointers are what the header asks for.
         let (state, scene, given) = unsafe { (border.enter(renderer)?, border.enter(scene)?, read(descriptor)?) };
-        let RendererState { renderer, shared, .. } = state;
+        let RendererState { renderer, shared, shown, .. } = state;
         let size = [given.width, given.height];
         let scene = &scene.scene;
         // SAFETY: as above.
-        let view = shared.workers.listen(|| unsafe { camera::choose(scene, given.camera, given.camera_name, size) })?;
+        let own = unsafe { camera::given(given.camera, size) }?;
+        // SAFETY: as above.
+        let name = unsafe { optional_text(given.camera_name, "the camera's name") }?;
+        let view = match (own, name) {
+            (Some(_), Some(_)) => return Err(Fault::argument("the frame has both a camera and the name of one")),
+            (Some(view), None) => view,
+            // To find a view of a scene that has none is work for all threads.
+            (None, name) => shared.run(|| scene.camera_view(name))?,
+        };
         // SAFETY: as above.
         let request = unsafe { request_of(&given, view) }?;
         let points = given.wait_count > 0 || given.signal_count > 0;
@@ -221,7 +229,12 @@ pub unsafe extern "C" fn irradia_render(
             }
             _ => {}
         }
-        let frame = shared.run(|| renderer.render(scene, &request))?;
+        let asked = [given.slots, request.handed.targets.iter().fold(0, |asked, &(slot, _)| asked | bit_of(slot))];
+        let now = Shown { scene: scene.identity(), revisions: scene.revisions(), asked };
+        let again = shown.take().is_some_and(|before| before == now);
+        let make = || renderer.render(scene, &request);
+        let frame = if again { shared.workers.listen(make) } else { shared.run(make) }?;
+        *shown = Some(now);
         let texts = FrameTexts::of(&frame);
         Ok(FrameHandle { guarded: Guarded::new(FrameState { frame, texts }) })
     };

@@ -10,6 +10,7 @@ use super::options::{OptionDescriptor, OptionTexts};
 use super::status::{Fault, IRRADIA_ERROR_SETTINGS, Status};
 use super::text::{self, optional_text, text};
 use crate::renderer::{Cancel, Preset, Renderer, Settings, SettingsError, Technique};
+use crate::scene::Revisions;
 use crate::slot::Slot;
 
 /// How a renderer begins.
@@ -34,6 +35,17 @@ pub struct RendererState {
     pub(super) renderer: Renderer,
     pub(super) shared: Arc<Shared>,
     pub(super) options: Vec<OptionTexts>,
+    /// What the last frame showed, with these settings.
+    pub(super) shown: Option<Shown>,
+}
+
+/// A scene as it was, and what was asked of it. What is made of scenes is made on all threads; another frame of the same needs none but the caller's.
+#[derive(PartialEq)]
+pub(super) struct Shown {
+    pub(super) scene: u64,
+    pub(super) revisions: Revisions,
+    /// Slots, of the host's memory and of targets.
+    pub(super) asked: [u32; 2],
 }
 
 /// Settings, and what frames leave on the device for the next one. One call at a time may use it, but for irradia_renderer_cancel().
@@ -70,7 +82,7 @@ pub unsafe extern "C" fn irradia_renderer_create(
         let options = OptionTexts::all(&settings);
         let renderer = shared.run(|| Renderer::new(&shared.context, settings))?;
         let cancel = renderer.cancel();
-        let state = RendererState { renderer, shared, options };
+        let state = RendererState { renderer, shared, options, shown: None };
         Ok(RendererHandle { guarded: Guarded::new(state), cancel })
     };
     // SAFETY: as above.
@@ -94,7 +106,8 @@ unsafe fn change(
 ) -> Status {
     call(|border| {
         // SAFETY: the caller's.
-        let RendererState { renderer, shared, .. } = unsafe { border.enter(renderer) }?;
+        let RendererState { renderer, shared, shown, .. } = unsafe { border.enter(renderer) }?;
+        *shown = None;
         let mut settings = renderer.settings().clone();
         change(&mut settings)?;
         Ok(shared.run(|| renderer.set_settings(settings))?)

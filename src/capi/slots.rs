@@ -22,3 +22,8 @@ pub(super) fn slot_of(bit: u32) -> Option<Slot> {
     let index = bit.is_power_of_two().then(|| bit.trailing_zeros() as usize)?;
     Slot::ALL.get(index).copied()
 }
+
+/// The bit of a slot, or of the image.
+pub(super) fn bit_of(slot: Option<Slot>) -> u32 {
+    slot.map_or(IRRADIA_SLOT_IMAGE, |slot| 1 << Slot::ALL.iter().position(|known| *known == slot).unwrap_or_default())
+}

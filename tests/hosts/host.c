@@ -7,6 +7,7 @@
  */
 #include "irradia.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -247,6 +248,31 @@ static void check_built_scene(irradia_context *context) {
     irradia_renderer_destroy(renderer);
 }
 
+/* Contexts' threads have names of their own. Those of rayon's that no context owns have the program's, as some of the driver's; of rayon's there would be as many
+   as the variable says. */
+static void check_threads(void) {
+    unsigned unnamed = 0;
+    const char *most = getenv("RAYON_NUM_THREADS");
+    struct dirent *task;
+    char path[300], own[64] = "", name[64];
+    DIR *tasks;
+    FILE *file;
+    if (!most) return;
+    tasks = opendir("/proc/self/task");
+    file = fopen("/proc/self/comm", "r");
+    CHECK(tasks && file && fgets(own, sizeof own, file));
+    fclose(file);
+    while ((task = readdir(tasks))) {
+        snprintf(path, sizeof path, "/proc/self/task/%s/comm", task->d_name);
+        file = fopen(path, "r");
+        if (!file) continue;
+        unnamed += fgets(name, sizeof name, file) && strcmp(name, own) == 0;
+        fclose(file);
+    }
+    closedir(tasks);
+    CHECK(unnamed < (unsigned)atoi(most));
+}
+
 static void check_all(const char *path) {
     irradia_context *context = NULL;
     irradia_scene *scene = NULL;
@@ -398,6 +424,7 @@ static void check_all(const char *path) {
         fprintf(stderr, "%zu messages of the validation layer, the first: %s\n", count, message);
         exit(1);
     }
+    check_threads();
     /* The renderer keeps the device. */
     irradia_context_destroy(context);
     irradia_renderer_destroy(renderer);

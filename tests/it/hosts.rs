@@ -69,8 +69,14 @@ impl Host {
 
     fn run(&self, arguments: &[&str]) -> Output {
         let done = succeed(&mut self.command(arguments));
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert!(said.is_empty(), "the library says nothing on the terminal: {said}");
+        let said = [&done.stdout, &done.stderr].map(|said| String::from_utf8_lossy(said));
+        // What is held is the host's own word.
+        assert!(
+            said[0].is_empty() || arguments[0] == "memory",
+            "the library says nothing on the terminal: {}",
+            said[0]
+        );
+        assert!(said[1].is_empty(), "the library says nothing on the terminal: {}", said[1]);
         done
     }
 
@@ -102,7 +108,8 @@ fn a_c_program_uses_everything_and_sees_what_the_program_shows() {
     let host = Host::c("c");
     let file = host.file("host.raw");
     let mut command = host.command(&["all", file.to_str().expect("UTF-8")]);
-    succeed(command.env("HOST_VALIDATION", "1"));
+    // More than the driver has: the host counts them, and none is to be of a pool that no context owns.
+    succeed(command.env("HOST_VALIDATION", "1").env("RAYON_NUM_THREADS", "12"));
     assert_same_picture(&file);
 }
 
