@@ -36,7 +36,7 @@ pub const IRRADIA_ERROR_INTERNAL: Status = 10;
 
 /// Why a call could not do what it was asked to.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     pub(super) status: Status,
     pub(super) sentence: String,
 }

@@ -37,7 +37,7 @@ handles! {
 }
 
 /// Index of what an identifier names.
-pub(in crate::capi) fn index_of(id: Id, what: &str) -> Result<usize, Fault> {
+pub(crate) fn index_of(id: Id, what: &str) -> Result<usize, Fault> {
     let index =
         id.checked_sub(1).ok_or_else(|| Fault::argument(format!("the {what}'s identifier is 0, which names none")))?;
     Ok(index as usize)
@@ -47,7 +47,7 @@ pub(in crate::capi) fn index_of(id: Id, what: &str) -> Result<usize, Fault> {
 ///
 /// # Safety
 /// `scene` is null, which is a fault, or alive; `id` is null or may be written to.
-pub(in crate::capi) unsafe fn add(
+pub(crate) unsafe fn add(
     scene: *mut SceneHandle,
     id: *mut Id,
     add: impl FnOnce(&mut SceneState) -> Result<usize, Fault>,
