@@ -234,6 +234,9 @@ typedef struct irradia_requirements irradia_requirements;
 // What there is to light. One call at a time may use it; irradia_render() reads it during the call alone.
 typedef struct irradia_scene irradia_scene;
 
+// A buffer whose memory other processes can import. Frames of its context fill it as a target. Its calls may come from several threads at once.
+typedef struct irradia_shared_buffer irradia_shared_buffer;
+
 // What every call that can fail returns: IRRADIA_OK, or one of IRRADIA_ERROR_…; irradia_last_error() has the sentence.
 typedef uint32_t irradia_status;
 
@@ -352,7 +355,8 @@ typedef struct {
     uint64_t access;
 } irradia_resource_use;
 
-// Where a slot is left on the device: an image or a buffer of the context's device. The copy is one command; nothing of it passes through the host's memory.
+// Where a slot is left on the device: an image or a buffer of the host's device, or a shared buffer of the context. The copy is one command; nothing of it passes through
+// the host's memory.
 typedef struct {
     // sizeof(irradia_target_descriptor), in each of an array.
     size_t size;
@@ -695,6 +699,27 @@ typedef struct {
     // 1: magnified texels stay squares.
     uint32_t nearest;
 } irradia_texture_descriptor;
+
+// What another process needs to import a shared buffer's memory: VkImportMemoryFdInfoKHR with VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, and a VkBuffer of
+// `byte_count` bytes for transfers from and to it and as a storage buffer, to which that memory is dedicated.
+typedef struct {
+    // sizeof(irradia_shared_buffer_descriptor).
+    size_t size;
+    // For irradia_target_descriptor::resource of this context's frames.
+    uint64_t resource;
+    // Bytes of the buffer.
+    uint64_t byte_count;
+    // Bytes of its memory: VkMemoryAllocateInfo::allocationSize.
+    uint64_t memory_byte_count;
+    // VkMemoryAllocateInfo::memoryTypeIndex, on the same device.
+    uint32_t memory_type;
+    // Zero.
+    uint32_t reserved;
+    // VkPhysicalDeviceIDProperties::deviceUUID of the context's device, and the driver's: only where both agree can the memory be imported.
+    uint8_t device_uuid[16];
+    // VkPhysicalDeviceIDProperties::driverUUID.
+    uint8_t driver_uuid[16];
+} irradia_shared_buffer_descriptor;
 
 // What a frame cost as a whole.
 typedef struct {
@@ -1077,6 +1102,29 @@ irradia_status irradia_scene_set_sky(irradia_scene *scene, const float *radiance
 //
 // `seconds`: finite; before the first and after the last keyframe things stand still.
 irradia_status irradia_scene_set_time(irradia_scene *scene, double seconds);
+
+// Makes a buffer on a context's own device whose memory other processes can import.
+//
+// `byte_count`: at least 1; 16 a pixel.
+// `buffer`: receives it; irradia_shared_buffer_destroy() ends it.
+//
+// Errors: IRRADIA_ERROR_DEVICE if the driver exports no memory, or the device is the host's, which shares what it likes; IRRADIA_ERROR_MEMORY.
+irradia_status irradia_shared_buffer_create(const irradia_context *context,
+                                            uint64_t byte_count,
+                                            irradia_shared_buffer **buffer);
+
+// Fills a descriptor, whose size is set.
+irradia_status irradia_shared_buffer_get(const irradia_shared_buffer *buffer,
+                                         irradia_shared_buffer_descriptor *descriptor);
+
+// Exports its memory as a file descriptor, as often as it is asked.
+//
+// `fd`: receives a new one, which the caller closes, or hands to another process and closes; a Vulkan that imports one closes it.
+irradia_status irradia_shared_buffer_export(const irradia_shared_buffer *buffer,
+                                            int32_t *fd);
+
+// Ends a shared buffer; memory that was imported elsewhere stays there. Null is allowed.
+void irradia_shared_buffer_destroy(irradia_shared_buffer *buffer);
 
 // One sentence on the last call of this thread that did not return IRRADIA_OK: what, where, what to do. Empty if there was none. UTF-8.
 //

@@ -1,7 +1,8 @@
 //! Contexts: a device each, and what renderers on it share.
 
+use std::collections::BTreeMap;
 use std::ffi::{CString, c_char, c_void};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::border::{call, create, take};
 use super::descriptor::{descriptors, read_optional};
@@ -11,7 +12,7 @@ use super::text::{self, optional_text};
 use super::vulkan::{self, DeviceDescriptor};
 use super::workers::Workers;
 use crate::renderer::{Context, ContextOptions};
-use crate::vulkan::Validation;
+use crate::vulkan::{SharedBuffer, Validation};
 
 /// No validation layer.
 pub const IRRADIA_VALIDATION_OFF: u32 = 0;
@@ -51,9 +52,15 @@ pub(super) struct Shared {
     pub(super) context: Context,
     pub(super) workers: Workers,
     device_name: CString,
+    /// Buffers that frames may fill, by the number of the resource.
+    buffers: Mutex<BTreeMap<u64, Arc<SharedBuffer>>>,
 }
 
 impl Shared {
+    pub(super) fn buffers(&self) -> MutexGuard<'_, BTreeMap<u64, Arc<SharedBuffer>>> {
+        self.buffers.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Runs work on the context's threads; all that is said goes to its log.
     pub(super) fn run<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         self.workers.listen(|| self.workers.run(work))
@@ -126,7 +133,7 @@ unsafe fn open(descriptor: *const ContextDescriptor) -> Result<ContextHandle, Fa
         workers.listen(|| unsafe { vulkan::context_on(given.host_device) })?
     };
     let device_name = text::owned(&context.device().name);
-    Ok(ContextHandle { shared: Arc::new(Shared { context, workers, device_name }) })
+    Ok(ContextHandle { shared: Arc::new(Shared { context, workers, device_name, buffers: Mutex::default() }) })
 }
 
 /// Ends a context. What was made on it and is still there keeps its device open until it is destroyed too. Null is allowed.

@@ -9,7 +9,7 @@ use super::renderer::{RendererHandle, RendererState, Shown};
 use super::scene::SceneHandle;
 use super::slots::{IRRADIA_SLOT_DISPLAY, IRRADIA_SLOT_IMAGE, bit_of, slot_of};
 use super::status::{Fault, Status};
-use super::targets::{SemaphorePoint, TargetDescriptor, points, targets};
+use super::targets::{SemaphorePoint, TargetDescriptor, points, shared_targets, targets};
 use super::text::{optional_text, owned};
 use crate::image::ToneMap;
 use crate::renderer::{Frame, FrameRequest, Handed, Timing};
@@ -218,17 +218,18 @@ pub unsafe extern "C" fn irradia_render(
         // SAFETY: as above.
         let request = unsafe { request_of(&given, view) }?;
         let points = given.wait_count > 0 || given.signal_count > 0;
-        match shared.context.shared_device().timelines_of_host() {
-            None if points || given.target_count > 0 => {
+        let _held = match shared.context.shared_device().timelines_of_host() {
+            None if points => {
                 return Err(Fault::argument(
-                    "targets and semaphores are of the context's device, which here is the library's own",
+                    "semaphores are of a host's device, and this context is on one of its own",
                 ));
             }
+            None => shared_targets(shared, &request.handed, size)?,
             Some(false) if points => {
                 return Err(Fault::argument("the host's device was created without the feature timelineSemaphore"));
             }
-            _ => {}
-        }
+            Some(_) => Vec::new(),
+        };
         let asked = [given.slots, request.handed.targets.iter().fold(0, |asked, &(slot, _)| asked | bit_of(slot))];
         let now = Shown { scene: scene.identity(), revisions: scene.revisions(), asked };
         let again = shown.take().is_some_and(|before| before == now);

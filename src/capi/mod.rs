@@ -10,7 +10,7 @@
 //! | `context`, `vulkan` | devices, the library's or the host's |
 //! | `scene/` | scenes, and the things in them |
 //! | `renderer`, `options` | settings |
-//! | `camera`, `slots`, `frame`, `pixels`, `targets`, `timings` | frames, what they show, where that goes, what they cost |
+//! | `camera`, `slots`, `frame`, `pixels`, `targets`, `shared`, `timings` | frames, what they show, where that goes, what they cost |
 //!
 //! Every type here is the host's: plain old data by value, or a handle behind a pointer. No number that comes in becomes a Rust enum or `bool` unchecked.
 
@@ -31,6 +31,7 @@ mod options;
 mod pixels;
 mod renderer;
 mod scene;
+mod shared;
 mod slots;
 mod status;
 mod targets;
@@ -47,6 +48,7 @@ pub use options::*;
 pub use pixels::*;
 pub use renderer::*;
 pub use scene::*;
+pub use shared::*;
 pub use slots::*;
 pub use status::*;
 pub use targets::*;

@@ -1,10 +1,14 @@
 //! Images and buffers of the host's that frames are left in.
 
+use std::sync::Arc;
+
+use super::context::Shared;
 use super::descriptor::{Descriptor, boolean, descriptors, read};
 use super::slots::{IRRADIA_SLOT_IMAGE, slot_of};
 use super::status::Fault;
+use crate::renderer::Handed;
 use crate::slot::Slot;
-use crate::vulkan::{ForeignPlace, ForeignTarget, ForeignUse, TimelinePoint};
+use crate::vulkan::{ForeignPlace, ForeignTarget, ForeignUse, SharedBuffer, TimelinePoint};
 
 /// Of a resource that no other queue family owns.
 pub const IRRADIA_FAMILY_SAME: u32 = 0xFFFF_FFFF;
@@ -23,7 +27,8 @@ pub struct ResourceUse {
     pub access: u64,
 }
 
-/// Where a slot is left on the device: an image or a buffer of the context's device. The copy is one command; nothing of it passes through the host's memory.
+/// Where a slot is left on the device: an image or a buffer of the host's device, or a shared buffer of the context. The copy is one command; nothing of it passes through
+/// the host's memory.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct TargetDescriptor {
@@ -126,6 +131,37 @@ pub(super) unsafe fn targets(
         target(&given, width)
     };
     (0..count).map(one).collect()
+}
+
+/// The shared buffers among targets of a context on a device of its own, which knows no other resources.
+pub(super) fn shared_targets(
+    shared: &Shared,
+    handed: &Handed,
+    [width, height]: [u32; 2],
+) -> Result<Vec<Arc<SharedBuffer>>, Fault> {
+    let known = shared.buffers();
+    let one = |(_, target): &(Option<Slot>, ForeignTarget)| {
+        let ForeignPlace::Buffer { buffer, offset, row_pixels } = target.place else {
+            return Err(Fault::argument(
+                "an image is of a host's device; this context, on one of its own, fills shared buffers",
+            ));
+        };
+        let found = known.get(&buffer).cloned().ok_or_else(|| {
+            Fault::argument("a target is no shared buffer of this context, which is on a device of its own")
+        })?;
+        let row = u64::from(if row_pixels == 0 { width } else { row_pixels });
+        let pixels = row * u64::from(height.saturating_sub(1)) + u64::from(width);
+        let end = pixels.checked_mul(16).and_then(|bytes| bytes.checked_add(offset));
+        if end.is_none_or(|end| end > found.bytes) {
+            let sentence = format!(
+                "a shared buffer of {} bytes does not hold {width}×{height} pixels of 16 bytes in rows of {row} from byte {offset} on",
+                found.bytes
+            );
+            return Err(Fault::argument(sentence));
+        }
+        Ok(found)
+    };
+    handed.targets.iter().map(one).collect()
 }
 
 /// Points as the engine has them.

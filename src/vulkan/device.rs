@@ -8,6 +8,8 @@ use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+#[cfg(feature = "capi")]
+use ash::khr;
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
@@ -45,6 +47,9 @@ pub(crate) struct Device {
     pub(crate) survey: Survey,
     pub(crate) labels: Option<ext::debug_utils::Device>,
     pub(super) marking: Marking,
+    /// Memory as file descriptors, of a device that was made here and has them.
+    #[cfg(feature = "capi")]
+    pub(super) sharing: Option<khr::external_memory_fd::Device>,
     allocator: ManuallyDrop<Mutex<Allocator>>,
     live: Mutex<BTreeMap<u64, (String, u64)>>,
     next_id: AtomicU64,
@@ -76,7 +81,8 @@ impl Device {
         let available = extensions_of(&instance, physical)?;
         let available: Vec<&CStr> = available.iter().filter_map(|name| name.extension_name_as_c_str().ok()).collect();
         let marker = extension(options.crash_markers, &available);
-        let enabled: Vec<_> = marker.iter().map(|name| name.as_ptr()).collect();
+        let sharing = available.iter().find(|name| **name == khr::external_memory_fd::NAME && cfg!(feature = "capi"));
+        let enabled: Vec<_> = marker.iter().chain(sharing).map(|name| name.as_ptr()).collect();
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&enabled)
@@ -89,6 +95,8 @@ impl Device {
         let queue = unsafe { raw.get_device_queue(survey.queue_family, 0) };
         let marking = Marking::new(options.crash_markers, marker, &instance.raw, &raw);
         let labels = instance.debug.then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
+        #[cfg(feature = "capi")]
+        let sharing = sharing.map(|_| khr::external_memory_fd::Device::new(&instance.raw, &raw));
         drop(alone);
         let allocator = match allocator_on(&instance, &raw, physical) {
             Ok(allocator) => ManuallyDrop::new(Mutex::new(allocator)),
@@ -107,6 +115,8 @@ impl Device {
             survey,
             labels,
             marking,
+            #[cfg(feature = "capi")]
+            sharing,
             allocator,
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
@@ -132,6 +142,7 @@ impl Device {
             queue: Mutex::new(queue),
             turns,
             survey,
+            sharing: None,
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             live: Mutex::default(),
             next_id: AtomicU64::new(1),
@@ -150,6 +161,44 @@ impl Device {
         // SAFETY: the physical device belongs to the instance, which is alive.
         unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) }
             .optimal_tiling_features
+    }
+
+    /// Whether memory of such buffers can be exported so.
+    #[cfg(feature = "capi")]
+    pub(super) fn exports_buffers(
+        &self,
+        usage: vk::BufferUsageFlags,
+        handle: vk::ExternalMemoryHandleTypeFlags,
+    ) -> bool {
+        let info = vk::PhysicalDeviceExternalBufferInfo::default().usage(usage).handle_type(handle);
+        let mut found = vk::ExternalBufferProperties::default();
+        // SAFETY: the physical device belongs to the instance, which is alive.
+        unsafe {
+            self.instance.raw.get_physical_device_external_buffer_properties(self.physical, &info, &mut found);
+        }
+        let features = found.external_memory_properties.external_memory_features;
+        features.contains(vk::ExternalMemoryFeatureFlags::EXPORTABLE)
+    }
+
+    /// The best type of memory among `types`, a bit each: the device's own, or else the first.
+    #[cfg(feature = "capi")]
+    pub(super) fn memory_type(&self, types: u32) -> u32 {
+        // SAFETY: the physical device belongs to the instance, which is alive.
+        let memory = unsafe { self.instance.raw.get_physical_device_memory_properties(self.physical) };
+        let usable = |index: &u32| types >> index & 1 == 1;
+        let own = |index: &u32| {
+            let flags = memory.memory_types[*index as usize].property_flags;
+            usable(index) && flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL)
+        };
+        (0..memory.memory_type_count).find(own).or_else(|| (0..32).find(usable)).unwrap_or_default()
+    }
+
+    /// Fills a struct that extends the properties of the physical device.
+    #[cfg(feature = "capi")]
+    pub(super) fn properties_into(&self, properties: &mut impl vk::ExtendsPhysicalDeviceProperties2) {
+        let mut all = vk::PhysicalDeviceProperties2::default().push_next(properties);
+        // SAFETY: the physical device belongs to the instance, which is alive.
+        unsafe { self.instance.raw.get_physical_device_properties2(self.physical, &mut all) };
     }
 
     /// Calls `submit` while nobody else submits, the host included.

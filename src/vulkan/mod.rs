@@ -31,6 +31,8 @@ pub(crate) mod program;
 mod queries;
 mod recorder;
 mod report;
+#[cfg(feature = "capi")]
+mod shared_buffer;
 mod storage_texels;
 mod traits;
 mod transfer;
@@ -59,6 +61,8 @@ pub(crate) use queries::Queries;
 pub(crate) use recorder::{Barriers, ImageBarrier, Recorder, Scope};
 pub use report::DeviceReport;
 pub(crate) use report::{Survey, devices};
+#[cfg(feature = "capi")]
+pub(crate) use shared_buffer::SharedBuffer;
 pub(crate) use storage_texels::TexelFormats;
 pub(crate) use traits::DeviceTraits;
 pub(crate) use transfer::{buffer_with, image_with, overwrite};

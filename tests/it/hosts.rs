@@ -127,6 +127,21 @@ fn a_cpp_program_lends_its_device_and_reads_frames_there() {
     assert_same_picture(&file);
 }
 
+/// The memory of a frame, handed on as a file descriptor.
+#[test]
+fn a_second_process_sees_a_frame_where_it_was_left() {
+    let more = ["-std=c99", "-Wno-missing-field-initializers", "-Wl,--no-as-needed", "-lvulkan"];
+    let host = Host::compile("cc", "share", &["share.c"], &more);
+    let file = host.file("host.raw");
+    let done = succeed(&mut host.command(&[file.to_str().expect("UTF-8")]));
+    let said = String::from_utf8_lossy(&done.stdout);
+    if said.starts_with("no export") {
+        println!("{said}");
+        return;
+    }
+    assert_same_picture(&file);
+}
+
 #[test]
 fn wrong_use_is_a_status_and_a_sentence() {
     Host::c("wrong").run(&["wrong"]);
