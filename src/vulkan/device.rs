@@ -8,9 +8,7 @@ use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-#[cfg(feature = "capi")]
-use ash::khr;
-use ash::{ext, vk};
+use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::crash_markers::{CrashMarkers, Marking, extension};
@@ -81,8 +79,8 @@ impl Device {
         let available = extensions_of(&instance, physical)?;
         let available: Vec<&CStr> = available.iter().filter_map(|name| name.extension_name_as_c_str().ok()).collect();
         let marker = extension(options.crash_markers, &available);
-        let sharing = available.iter().find(|name| **name == khr::external_memory_fd::NAME && cfg!(feature = "capi"));
-        let enabled: Vec<_> = marker.iter().chain(sharing).map(|name| name.as_ptr()).collect();
+        let sharing = sharing(&available);
+        let enabled: Vec<_> = marker.iter().chain(&sharing).map(|name| name.as_ptr()).collect();
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&enabled)
@@ -343,6 +341,12 @@ fn allocator_on(
         tracing::error!("gpu-allocator: {error}");
         VulkanError::OutOfMemory { what: "the allocator".to_owned(), mib: 0.0, last_pass: "none".to_owned() }
     })
+}
+
+/// The extension that exports memory, for hosts alone.
+fn sharing<'a>(available: &[&'a CStr]) -> Option<&'a CStr> {
+    let wanted = cfg!(feature = "capi").then_some(khr::external_memory_fd::NAME)?;
+    available.iter().copied().find(|name| *name == wanted)
 }
 
 fn extensions_of(
