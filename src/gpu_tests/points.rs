@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::invariance::{difference, transformed};
 use super::path_probe::{Ask, Tracer};
-use super::scenes::{builtin, floor, lambert, place, quad, request};
+use super::scenes::{builtin, floor, lambert, place, quad, request, view};
 use super::session::Session;
 use super::splat_bench::{Bench, Landed, from_above, largest, oblique, orthographic, random, white_floor};
 use crate::caustics::points::draw::draw;
@@ -265,12 +265,19 @@ fn photons_are_sent_again_in_turns() {
         let share = sent(&render(&mut renderer, &scene, index));
         assert!((1000..=1001).contains(&share), "{share}");
     }
-    let camera_moved = FrameRequest { size: [60, 40], ..whole.clone() };
     for index in 13..17 {
         render(&mut renderer, &scene, index);
     }
-    let moved = renderer.render(&scene, &camera_moved).expect("a frame");
-    assert!(ran(&moved, "draw") && !ran(&moved, "trace") && !ran(&moved, "choose"), "a moved camera sends no photon");
+    let camera = view(DVec3::new(0.4, 1.2, 1.1), DVec3::ZERO);
+    assert!(camera != whole.camera);
+    let other_size = FrameRequest { size: [60, 40], ..whole.clone() };
+    let other_camera = FrameRequest { camera, ..whole.clone() };
+    for (what, request) in [("another size", other_size), ("another camera", other_camera)] {
+        let moved = renderer.render(&scene, &request).expect("a frame");
+        let sends = ran(&moved, "trace") || ran(&moved, "choose");
+        assert!(ran(&moved, "draw") && !sends, "{what} sends no photon");
+        assert!(caustics(&moved).pixels.iter().any(|pixel| pixel[0] > 0.0), "{what} shows them");
+    }
 }
 
 #[test]
@@ -327,6 +334,17 @@ fn tiles_without_photons_are_skipped() {
     assert!(none.1 == 0 && largest(&none.0) == 0.0);
     let photon = Landed { position: bench.on_floor(12.0, 12.0), normal: DVec3::Y, flux: [1.0; 3], radius: 1e-3 };
     assert_eq!(filtered(&mut bench, &options(&[]), &[photon]).1, 1, "the middle of a tile");
+}
+
+/// As many photons, places and turns as buffers hold.
+#[test]
+fn the_largest_budgets_fit() {
+    let session = Session::open();
+    for [photons, bounces, frames] in [["1048576", "4", "8"], ["1048576", "2", "3"]] {
+        let most = [("points.photons", photons), ("points.bounces", bounces), ("points.frames", frames)];
+        let frame = session.render(&builtin("ring"), &settings(&most), &everything(&builtin("ring"), [24, 16]));
+        assert!(caustics(&frame).pixels.iter().any(|pixel| pixel[0] > 0.0));
+    }
 }
 
 /// More photons than pixels, fewer than turns, pictures of a pixel, scenes of all kinds: no pixel is anything but a number.

@@ -59,8 +59,9 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
 
     let slot = graph.image("caustics", FLOATS, buffer.size);
     let slots = graph.image("points.slots", WORDS, buffer.size);
-    // A pixel has a photon at least.
-    let sources = graph.buffer::<[u32; 4]>("points.sources", SOURCE_TEXELS * photons.count.max(1) as usize);
+    // Of each pixel that has a photon at least.
+    let most_sources = photons.count.max(1).min(buffer.size[0].saturating_mul(buffer.size[1]));
+    let sources = graph.buffer::<[u32; 4]>("points.sources", SOURCE_TEXELS * most_sources as usize);
     let source_count = graph.buffer::<u32>("points.source_count", 1);
     graph.clear_image(&name("filter/clear"), slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
     graph.clear_image(&name("filter/clear-slots"), slots, ClearColor::Uint([0; 4]));
