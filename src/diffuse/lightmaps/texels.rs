@@ -13,6 +13,9 @@ use crate::shaders::lightmaps::{Cuts, CutsPush, Links, LinksPush, Place, PlacePu
 /// Links that a buffer holds: 128 MiB, which every device lets a kernel see of one.
 const LINKS: u32 = (1 << 27) / 8;
 
+/// Specular events of a link at most, where bounces have no limit.
+const MOST_EVENTS: u32 = 7;
+
 /// Texels of which a buffer holds so many links each.
 pub(super) const fn most_texels(links: u32) -> u32 {
     LINKS / links
@@ -100,7 +103,12 @@ impl LightTexels {
             lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
             links: links.write(),
             arrivals: arrivals.write(),
-            push: LinksPush { texel_count, link_count },
+            push: LinksPush {
+                texel_count,
+                link_count,
+                link_events: options.bounces.map_or(MOST_EVENTS, |bounces| bounces.saturating_sub(2)),
+                arrival_events: options.bounces.map_or(MOST_EVENTS, |bounces| bounces.saturating_sub(1)),
+            },
         };
         let pass = graph.pass("diffuse/lightmaps/texels/links", pass);
         pass.note("rays", map.used.len() as u64 * u64::from(link_count)).threads(threads);
