@@ -85,7 +85,7 @@ impl Method for Lightmaps {
                 iim::all(cx.graph, &texels, aim, options)
             }
             LightmapsSettle::First | LightmapsSettle::Never => {
-                renewed(cx.graph, scene, &texels, &light, options)
+                renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)
             }
         };
         Ok(Some(shade::shade(cx, scene, &texels, shown)))
