@@ -7,6 +7,7 @@ use super::{options, settings};
 use crate::gpu_tests::against_paths::passes_run;
 use crate::gpu_tests::scenes::{add_light, box_faces, lambert, place, request, view, with_camera};
 use crate::gpu_tests::session::Session;
+use crate::method::{Options, Preset};
 use crate::renderer::{Frame, FrameRequest, Renderer, Slot, Timing};
 use crate::scene::{CameraView, LightId, LightKind, Scene};
 
@@ -158,6 +159,35 @@ fn a_light_that_is_switched_arrives_early() {
     let last = difference(&still, &expected);
     println!("after {frames} more frames {last:.4}");
     assert!(last < 0.01, "{last}");
+}
+
+/// What is left of the change after each frame when the only light of a scene is switched, at the default but for the texels that a frame renews.
+#[test]
+#[ignore = "a measurement"]
+fn how_fast_a_switched_light_arrives() {
+    let session = Session::open();
+    for (name, texels) in ["cornell-point", "two-rooms"].into_iter().flat_map(|name| [64, 512, 2048].map(|n| (name, n)))
+    {
+        let options = LightmapsOptions { texels, ..LightmapsOptions::preset(Preset::Default) };
+        let settings = settings(options);
+        let (bright, camera) = with_camera(name);
+        let mut dark = bright.clone();
+        scale_light(&mut dark, 0, 1e-3);
+        let asked = FrameRequest { size: [64, 48], ..asked(&camera) };
+        for (what, from, to) in [("on", &dark, &bright), ("off", &bright, &dark)] {
+            let mut scene = from.clone();
+            let mut renderer = session.renderer(&settings);
+            let mut next = |scene: &Scene| renderer.render(scene, &asked).expect("a frame");
+            let before = next(&scene);
+            let light = to.lights()[0].clone();
+            scene.set_light(LightId(0), light).expect("a sound light");
+            let after = session.render(&scene, &settings, &asked);
+            let away = |frame: &Frame| difference(frame, &after);
+            let left: Vec<f64> = (0..12).map(|_| away(&next(&scene)) / away(&before)).collect();
+            let frames = left.iter().position(|&left| left < 0.1).map(|number| number + 1);
+            println!("{name}, {texels} texels, {what}: 90 % after {frames:?} frames; left {left:.3?}");
+        }
+    }
 }
 
 /// Something moves: its texels go with it, and in the end all is as a fresh renderer makes it.
