@@ -3,6 +3,7 @@
 #ifndef LIB_SEEN_TRIANGLE
 #define LIB_SEEN_TRIANGLE
 
+#include "lib/scene.glsl"
 #include "lib/vectors.glsl"
 
 // Shares of the distance: how far before the point the ray begins, and how far beside it the next one goes where a silhouette's rounding hid the surface.
@@ -10,6 +11,12 @@ const float BEFORE = 1.0 / 64.0;
 const float BESIDE = 1.0 / 4096.0;
 // An orthographic camera has no distance; the image's width takes its place, unless depths round by more.
 const float DEPTH_SHARE = 1e-4;
+
+// How far away a camera is, in that sense.
+float viewer_distance(Camera camera, vec3 position_rs) {
+    return camera.depth_range > 0.0 ? max(2.0 * length(camera.right_scaled), DEPTH_SHARE * camera.depth_range)
+                                    : distance(camera.position_rs, position_rs);
+}
 
 // `to_viewer`: unit, the viewer `distance` away; `normal`: of the triangle.
 Hit seen_hit(vec3 position, vec3 normal, vec3 to_viewer, float distance) {

@@ -1,14 +1,14 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "lib/vectors.glsl"
-#include "lightmaps/charts.glsl"
 #include "lightmaps/links.glsl"
 
 // One more bounce of the approximated illumination map (AIM): what one texel receives, of the lights and along its links,
 //
-//   E(x) = E_direct(x) + E_caustic(x) + 1/N Σ_l w_l·E(y_l)        W/m²
+//   E(x) = E_direct(x) + E_arrival(x) + E_caustic(x) + 1/N Σ_l w_l·E(y_l)        W/m²
 //
-// with E_caustic what photons bring that met specular lobes alone (send.comp), and w_l the albedo where the link ends, and what mirrors on the way leave of it (links.comp).
+// with E_arrival what emissive surfaces and the sky send by way of specular lobes alone (links.comp), E_caustic what photons bring of the other lights that way (send.comp):
+// both are scattered once at least, and so come with the first bounce. w_l is the albedo where the link ends, and what mirrors on the way leave of it (links.comp).
 
 layout(local_size_x = 64) in;
 
@@ -19,11 +19,13 @@ layout(set = 0, binding = 0) uniform samplerBuffer direct;
 layout(set = 0, binding = 1) uniform usamplerBuffer links;
 layout(set = 0, binding = 2) uniform samplerBuffer before;
 layout(set = 0, binding = 3) uniform samplerBuffer caustics;
-layout(set = 0, binding = 4) writeonly buffer After { vec4 after[]; };
+layout(set = 0, binding = 4) uniform samplerBuffer arrivals;
+layout(set = 0, binding = 5) writeonly buffer After { vec4 after[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint texel_count;
     uint link_count;
+    vec3 sky;  // W/(m²·sr)
 } push;
 
 void main() {
@@ -31,14 +33,9 @@ void main() {
     if (number >= push.texel_count) {
         return;
     }
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
-        uvec2 link = texelFetch(links, int(i * push.texel_count + number)).xy;
-        if (link.x != NO_TEXEL) {
-            sum += unpack_share(link.y) * texelFetch(before, int(link.x)).rgb;
-        }
-    }
-    vec3 irradiance = texelFetch(direct, int(number)).rgb + sum / float(push.link_count);
+    vec3 irradiance = texelFetch(direct, int(number)).rgb;
+    irradiance += texelFetch(arrivals, 2 * int(number)).rgb + push.sky * texelFetch(arrivals, 2 * int(number) + 1).rgb;
+    irradiance += light_along_links(links, push.texel_count, push.link_count, number, before);
     irradiance += HAS_CAUSTICS != 0u ? texelFetch(caustics, int(number)).rgb : vec3(0.0);
     after[number] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
 }

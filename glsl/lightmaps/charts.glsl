@@ -29,6 +29,21 @@ Chart load_chart(usamplerBuffer charts, uint triangle) {
     return Chart(corners, b.z, b.w, ivec2(c.xy), uintBitsToFloat(c.z));
 }
 
+// The first texel of a side; NO_TEXEL: it has no map.
+uint first_of_side(Chart chart, bool back) {
+    return back ? chart.first_back : chart.first_front;
+}
+
+// Where a texel lies among those of its side.
+ivec2 place_on_map(Chart chart, uint first, uint texel) {
+    return ivec2(int(texel - first) % chart.size.x, int(texel - first) / chart.size.x);
+}
+
+// Where a point of a triangle lies on its map. `place`: the weights of corners 1 and 2.
+vec2 point_on_map(Chart chart, vec2 place) {
+    return (1.0 - place.x - place.y) * chart.corners[0] + place.x * chart.corners[1] + place.y * chart.corners[2];
+}
+
 // Four texels around a point of a map, by number, and the weights of bilinear interpolation. The first one is that by which their cell goes.
 struct Cell {
     uvec4 texels;

@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push {
 
 const uint LEVELS = 1024u;
 
-shared uint least_level;  // that has room; 0 is none
+shared uint least_level;  // the last one that has room
 shared uint above;        // texels of higher ones
 
 #define SCAN_TYPE uvec2

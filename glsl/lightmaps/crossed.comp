@@ -16,14 +16,15 @@ layout(push_constant, scalar) uniform Push {
     uint box_count;
 } push;
 
-bool crosses(vec3 from, vec3 to, vec3 low, vec3 high) {
+// `end`: of the way from the one point to the other.
+bool crosses(vec3 from, vec3 to, float end, vec3 low, vec3 high) {
     vec3 way = to - from;
     vec3 inverse = 1.0 / mix(way, vec3(1e-30), lessThan(abs(way), vec3(1e-30)));
     vec3 a = (low - from) * inverse;
     vec3 b = (high - from) * inverse;
     vec3 enter = min(a, b);
     vec3 leave = max(a, b);
-    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, 1.0));
+    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, end));
 }
 
 void main() {
@@ -35,14 +36,18 @@ void main() {
     bool met = false;
     [[dont_unroll]] for (uint event = 1u; event < RECORDS_A_PHOTON && !met; ++event) {
         int record = int(record_of(photon, event));
-        if (texelFetch(records, record + 1).w != 0u) {
+        uint ends = texelFetch(records, record + 1).w;
+        if (ends == PATH_ENDED) {
             break;
         }
         vec3 to = uintBitsToFloat(texelFetch(records, record).xyz);
         [[dont_unroll]] for (uint box = 0u; box < push.box_count; ++box) {
             vec3 low = texelFetch(boxes, 2 * int(box)).xyz;
             vec3 high = texelFetch(boxes, 2 * int(box) + 1).xyz;
-            met = met || crosses(from, to, low, high);
+            met = met || crosses(from, to, ends == PATH_LEFT ? 3e38 : 1.0, low, high);
+        }
+        if (ends == PATH_LEFT) {
+            break;
         }
         from = to;
     }

@@ -44,9 +44,8 @@ void main() {
     bool cut = false;
     if (texel.triangle != NO_TEXEL) {
         Chart chart = load_chart(lightmap_charts, texel.triangle & ~TEXEL_BACK);
-        uint first = (texel.triangle & TEXEL_BACK) != 0u ? chart.first_back : chart.first_front;
-        ivec2 place = ivec2(int(number - first) % chart.size.x, int(number - first) / chart.size.x);
-        cut = is_cut(texels_of_cell(first, chart.size, place));
+        uint first = first_of_side(chart, (texel.triangle & TEXEL_BACK) != 0u);
+        cut = is_cut(texels_of_cell(first, chart.size, place_on_map(chart, first, number)));
         if (own == 0u) {
             atomicAdd(counts[0], 1u);
         }

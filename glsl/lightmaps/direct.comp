@@ -22,8 +22,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform samplerBuffer arrivals;  // links.comp
-layout(set = 0, binding = 1) writeonly buffer Direct { vec4 direct[]; };
+layout(set = 0, binding = 0) writeonly buffer Direct { vec4 direct[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint texel_count;
@@ -120,8 +119,11 @@ void main() {
     if ((texelFetch(lightmap_flags, int(number)).x & TEXEL_VALID) != 0u) {
         vec3 origin = offset_ray_origin(texel.position, texel.face);
         uint seed = seed_of(number, STREAM);
-        Quarters quarters = quarters_of(texel, origin);
         uint punctual_rays = 4u * push.light_count;
+        Quarters quarters;
+        if (push.light_count > 0u) {
+            quarters = quarters_of(texel, origin);
+        }
         [[dont_unroll]] for (uint i = 0u; i < punctual_rays + push.sample_count; ++i) {
             bool sharp = i < punctual_rays;
             vec3 start = sharp ? quarters.origins[i & 3u] : origin;
@@ -140,7 +142,6 @@ void main() {
             found += dot(direction, texel.face) > 0.0 ? along(origin, direction, local.z) : vec3(0.0);
         }
         irradiance += found * (PI / max(float(push.direction_count), 1.0));
-        irradiance += texelFetch(arrivals, 2 * int(number)).rgb + push.sky * texelFetch(arrivals, 2 * int(number) + 1).rgb;
     }
     direct[number] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
 }

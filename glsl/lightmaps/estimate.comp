@@ -27,6 +27,7 @@ layout(set = 0, binding = 5) buffer Received { vec4 received[]; };
 layout(push_constant, scalar) uniform Push {
     uint texel_count;
     uint nearest;        // N
+    uint all;            // 1: something moved, and texels may see other parts of their surfaces
     float steps_a_watt;
 } push;
 
@@ -111,13 +112,12 @@ void main() {
     }
     LightTexel texel = load_light_texel(number);
     uint surface = texelFetch(lightmap_texels, 2 * int(number) + 1).w;
-    if (texel.triangle == NO_TEXEL || !is_valid(number) || texelFetch(touched, int(surface)).x == 0u) {
+    if (texel.triangle == NO_TEXEL || !is_valid(number) || (push.all == 0u && texelFetch(touched, int(surface)).x == 0u)) {
         return;
     }
     Chart chart = load_chart(lightmap_charts, texel.triangle & ~TEXEL_BACK);
-    uint first = (texel.triangle & TEXEL_BACK) != 0u ? chart.first_back : chart.first_front;
-    ivec2 own = ivec2(int(number - first) % chart.size.x, int(number - first) / chart.size.x);
-    Square square = square_around(first, chart.size, own);
+    uint first = first_of_side(chart, (texel.triangle & TEXEL_BACK) != 0u);
+    Square square = square_around(first, chart.size, place_on_map(chart, first, number));
     Span span = span_of(square);
     vec3 origin = lifted(texel.position, texel.face, texel.size);
     float area = span.area * (span.cut ? seen_share(square, origin, number) : 1.0);

@@ -22,7 +22,9 @@ layout(set = 0, binding = 1) writeonly buffer Arrivals { vec4 arrivals[]; };  //
 
 layout(push_constant, scalar) uniform Push {
     uint texel_count;
-    uint link_count;  // of each
+    uint link_count;      // of each
+    uint link_events;     // specular ones on the way of a link at most: bounces after all
+    uint arrival_events;  // likewise of what is noted beside
 } push;
 
 const uint STREAM = 0x11CE5u;
@@ -33,18 +35,23 @@ struct Arrival {
     vec3 sky;
 };
 
+// Whether light that has so many specular events behind it is one of those that are noted.
+bool is_arrival(uint event) {
+    return event > 0u && event <= push.arrival_events;
+}
+
 // The link of one ray.
 uvec2 follow(vec3 origin, vec3 direction, uint seed, inout Arrival arrival) {
     vec3 share = vec3(1.0);
     [[dont_unroll]] for (uint event = 0u; event < MOST_EVENTS && max3(share) > 0.0; ++event) {
         Hit hit = closest_hit(origin, direction, 3e38);
         if (hit.triangle == NO_TRIANGLE) {
-            arrival.sky += event > 0u ? share : vec3(0.0);
+            arrival.sky += is_arrival(event) ? share : vec3(0.0);
             break;
         }
         HitVertex vertex = vertex_of_hit(load_triangle(triangles, hit.triangle), hit, origin, direction, Footprint(vec4(0.0), vec4(0.0)));
         share *= vertex.transmittance;
-        arrival.emitted += event > 0u ? share * vertex.emitted : vec3(0.0);
+        arrival.emitted += is_arrival(event) ? share * vertex.emitted : vec3(0.0);
         if (vertex.unlit) {
             break;
         }
@@ -54,6 +61,9 @@ uvec2 follow(vec3 origin, vec3 direction, uint seed, inout Arrival arrival) {
         viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
         float diffuse_share = lobe_shares(vertex.matter, viewer.z).x;
         if (random.x < diffuse_share) {
+            if (event > push.link_events) {
+                break;
+            }
             vec3 albedo = indirect_diffuse_albedo(vertex.matter.diffuse_albedo, vertex.matter.f0, vertex.matter.f90);
             bool back = dot(front_normal(load_triangle(triangles, hit.triangle)), direction) > 0.0;
             Cell cell = texels_at(hit.triangle, hit.barycentric, back, vertex.position, vertex.face);

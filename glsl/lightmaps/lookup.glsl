@@ -16,11 +16,11 @@ bool is_valid(uint texel) {
 // `place`: weights of corners 1 and 2 of the triangle. `face`: its normal on the side of the point.
 Cell texels_at(uint triangle, vec2 place, bool back, vec3 position, vec3 face) {
     Chart chart = load_chart(lightmap_charts, triangle);
-    uint first = back ? chart.first_back : chart.first_front;
+    uint first = first_of_side(chart, back);
     if (first == NO_TEXEL) {
         return NO_CELL;
     }
-    vec2 at = (1.0 - place.x - place.y) * chart.corners[0] + place.x * chart.corners[1] + place.y * chart.corners[2];
+    vec2 at = point_on_map(chart, place);
     Cell cell = cell_at(first, chart.size, at);
     if ((texelFetch(lightmap_flags, int(cell.texels.x)).x & CELL_CUT) == 0u) {
         return cell;

@@ -33,10 +33,9 @@ void main() {
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         vec3 albedo = indirect_diffuse_albedo(point);
         if (max3(albedo) > 0.0) {
-            float distance = camera.depth_range > 0.0 ? max(2.0 * length(camera.right_scaled), DEPTH_SHARE * camera.depth_range)
-                                                      : distance(camera.position_rs, position_rs);
-            vec3 irradiance =
-                seen_irradiance(position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs), distance, gathered);
+            vec3 irradiance = seen_irradiance(
+                position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs),
+                viewer_distance(camera, position_rs), gathered);
             radiance = albedo * INVERSE_PI * irradiance;
         }
     }

@@ -1,7 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "lightmaps/changes.glsl"
-#include "lightmaps/charts.glsl"
 #include "lightmaps/links.glsl"
 
 // How much the light of one texel changed since it was gathered, by what comes along its links:
@@ -33,14 +32,7 @@ void main() {
         return;
     }
     uint number = texelFetch(used, int(place)).x;
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < push.link_count; ++i) {
-        uvec2 link = texelFetch(links, int(i * push.texel_count + number)).xy;
-        if (link.x != NO_TEXEL) {
-            sum += unpack_share(link.y) * texelFetch(received, int(link.x)).rgb;
-        }
-    }
-    vec3 light = sum / float(push.link_count);
+    vec3 light = light_along_links(links, push.texel_count, push.link_count, number, received);
     vec3 before = texelFetch(then, int(number)).rgb;
     uint level = is_change(light, before) ? max(floatBitsToUint(change_of(light, before)) >> 21, 1u) : 0u;
     now[number] = vec4(light, 1.0);

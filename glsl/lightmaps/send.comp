@@ -99,11 +99,17 @@ void touch(uint texel) {
 // The texel that is nearest to where a ray met a side of a triangle.
 uint texel_at(Hit hit, bool back) {
     Chart chart = load_chart(lightmap_charts, hit.triangle);
-    uint first = back ? chart.first_back : chart.first_front;
-    vec2 at = (1.0 - hit.barycentric.x - hit.barycentric.y) * chart.corners[0] + hit.barycentric.x * chart.corners[1]
-              + hit.barycentric.y * chart.corners[2];
-    ivec2 near = ivec2(clamp(at + 0.5, vec2(0.0), vec2(chart.size - 1)));
+    uint first = first_of_side(chart, back);
+    ivec2 near = ivec2(clamp(point_on_map(chart, hit.barycentric) + 0.5, vec2(0.0), vec2(chart.size - 1)));
     return first == NO_TEXEL ? NO_TEXEL : first + uint(near.y * chart.size.x + near.x);
+}
+
+// Notes that a path goes on into the open.
+void note_way_out(uint record, vec3 origin, vec3 direction) {
+    if (PROBES == 0u) {
+        records[record] = uvec4(floatBitsToUint(origin + push.radius * direction), NO_TEXEL);
+        records[record + 1u].w = PATH_LEFT;
+    }
 }
 
 // Returns whether the path is another one than it was.
@@ -119,7 +125,7 @@ bool go(uint photon) {
                 touch(records[record].w);
             }
             records[record] = uvec4(floatBitsToUint(start.origin), NO_TEXEL);
-            records[record + 1u] = uvec4(floatBitsToUint(start.flux), event > 0u ? 1u : 0u);
+            records[record + 1u] = uvec4(floatBitsToUint(start.flux), event > 0u ? PATH_ENDED : 0u);
         }
     }
     uint rays = 0u;
@@ -129,10 +135,12 @@ bool go(uint photon) {
         Hit hit = closest_hit(origin, direction, 3e38);
         ++rays;
         if (hit.triangle == NO_TRIANGLE) {
+            note_way_out(record_of(photon, event), origin, direction);
             break;
         }
         HitVertex vertex = vertex_of_hit(load_triangle(triangles, hit.triangle), hit, origin, direction, Footprint(vec4(0.0), vec4(0.0)));
         if (vertex.unlit) {
+            note_way_out(record_of(photon, event), origin, direction);
             break;
         }
         flux *= vertex.transmittance * (event == 1u ? range_window(hit.distance, start.range) : 1.0);

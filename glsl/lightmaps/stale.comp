@@ -3,29 +3,33 @@
 #include "groups/scene_lights.glsl"
 #include "lib/sobol.glsl"
 
-// Whether one group of photons has to be sent again because its light is another one now. Emissive surfaces count as one light, and so does the sky; what names them the
-// host says.
+// Whether one group of photons has to be sent again because its light is another one now. Emissive surfaces count as one light, whose photons start anew with them, and so
+// does the sky, whose name the host says.
 
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) writeonly buffer Stale { uint stale[]; };  // by group
 layout(set = 0, binding = 1) buffer Keys { uint keys[]; };              // of the light that the group was sent from
+layout(set = 0, binding = 2) writeonly buffer Among { uint among[]; };  // a word whose content the host names by the surfaces
 
 layout(push_constant, scalar) uniform Push {
     uint group_count;
     uint groups_a_light;
     uint light_count;  // punctual
-    uint others_key;   // of emissive surfaces and sky
+    uint sky_key;
     uint all;          // 1: all groups are
 } push;
 
 void main() {
     uint number = gl_GlobalInvocationID.x;
+    if (number == 0u) {
+        among[0] = push.group_count;
+    }
     if (number >= push.group_count) {
         return;
     }
     uint light = number / push.groups_a_light;
-    uint key = push.others_key;
+    uint key = push.sky_key;
     if (light < push.light_count) {
         key = 0u;
         [[dont_unroll]] for (int texel = 0; texel < 4; ++texel) {

@@ -32,10 +32,8 @@ void main() {
         vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
         if (max3(indirect_diffuse_albedo(point)) > 0.0) {
-            float distance = camera.depth_range > 0.0 ? max(2.0 * length(camera.right_scaled), DEPTH_SHARE * camera.depth_range)
-                                                      : distance(camera.position_rs, position_rs);
             spot = seen_subtriangle(
-                position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs), distance);
+                position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs), viewer_distance(camera, position_rs));
         }
     }
     imageStore(spots, pixel, spot);

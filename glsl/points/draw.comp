@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer photons;
-layout(set = 0, binding = 1) uniform usamplerBuffer peak;
+layout(set = 0, binding = 1) uniform usamplerBuffer fluxes;
 layout(set = 0, binding = 2, r32ui) uniform uimage2D red;
 layout(set = 0, binding = 3, r32ui) uniform uimage2D green;
 layout(set = 0, binding = 4, r32ui) uniform uimage2D blue;
@@ -26,6 +26,14 @@ layout(push_constant, scalar) uniform Push {
     float radius;        // of all photons, m; 0: each has its own ellipse
     float radius_scale;  // of its radii
 } push;
+
+// The larger radius that the photons of a pixel have in the mean, at most, if this one is the widest by that measure: whole numbers may be off by 1 in each of the sums of
+// widths.comp, so that of a photon of f wholes whose squared radius is the share s of the largest one, (f·s + 4)/(f − 1) of it may be read.
+float rounded_radius(float radius, float wholes, float extent) {
+    float most = float(MOST_REACH) * extent;
+    float share = wholes > 1.0 ? (wholes * radius * radius / (most * most) + 4.0) / (wholes - 1.0) : 1.0;
+    return most * sqrt(min(share, 1.0));
+}
 
 void list_tiles(ivec2 pixel, int reach) {
     ivec2 low = max(pixel - reach, ivec2(0)) / TILE_SIDE;
@@ -56,13 +64,15 @@ void main() {
     if (!lands_in_view(photon, push.size, pixel, place)) {
         return;
     }
-    uvec3 terms = fixed_point(photon.flux, fixed_point_scale(texelFetch(peak, 0).x, push.count_log2), chance_of(photon.position_rs));
+    float scale = fixed_point_scale(fluxes, push.count_log2);
+    uvec3 terms = fixed_point(photon.flux, scale, chance_of(photon.position_rs));
     imageAtomicAdd(red, pixel, terms.x);
     imageAtomicAdd(green, pixel, terms.y);
     imageAtomicAdd(blue, pixel, terms.z);
     int bit = bit_in_tile(pixel);
     atomicOr(tile_lit[2 * tile_of_pixel(pixel, push.size) + (bit >> 5)], 1u << (bit & 31));
     float radius = bounded_radius(push.radius > 0.0 ? push.radius : push.radius_scale * photon.larger, place.extent);
-    // What rounding may add to the mean of several.
-    list_tiles(pixel, reach_of(1.01 * radius, place.extent));
+    float mean = (photon.flux.x + photon.flux.y + photon.flux.z) * (1.0 / 3.0);
+    // Floats round too.
+    list_tiles(pixel, reach_of(1.001 * rounded_radius(radius, mean * scale, place.extent), place.extent));
 }

@@ -7,7 +7,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer photons;
-layout(set = 0, binding = 1) buffer PeakBlock { uint peak[]; };
+layout(set = 0, binding = 1) buffer FluxBlock { uint fluxes[]; };  // the peak · total.comp
 
 layout(push_constant, scalar) uniform Push { uint count; } push;
 
@@ -25,6 +25,6 @@ void main() {
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && largest > 0u) {
-        atomicMax(peak[0], largest);
+        atomicMax(fluxes[0], largest);
     }
 }

@@ -9,7 +9,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer photons;
-layout(set = 0, binding = 1) uniform usamplerBuffer peak;
+layout(set = 0, binding = 1) uniform usamplerBuffer fluxes;
 layout(set = 0, binding = 2, r32ui) uniform uimage2D shift_x;
 layout(set = 0, binding = 3, r32ui) uniform uimage2D shift_y;
 
@@ -32,7 +32,7 @@ void main() {
     }
     vec2 inside = clamp(image_place(photon.position_rs, push.size) - vec2(pixel), 0.0, 1.0);
     float mean = (photon.flux.x + photon.flux.y + photon.flux.z) * (1.0 / 3.0);
-    float scale = fixed_point_scale(texelFetch(peak, 0).x, push.count_log2);
+    float scale = fixed_point_scale(fluxes, push.count_log2);
     uvec3 terms = fixed_point(mean * vec3(inside, 0.0), scale, chance_of(photon.position_rs));
     imageAtomicAdd(shift_x, pixel, terms.x);
     imageAtomicAdd(shift_y, pixel, terms.y);

@@ -13,7 +13,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 3) uniform usamplerBuffer peak;
+layout(set = 0, binding = 3) uniform usamplerBuffer fluxes;
 layout(set = 0, binding = 4) uniform usampler2D red;
 layout(set = 0, binding = 5) uniform usampler2D green;
 layout(set = 0, binding = 6) uniform usampler2D blue;
@@ -89,7 +89,7 @@ void main() {
         }
     }
     whole *= float(apart * apart);
-    vec3 flux = vec3(sums) / fixed_point_scale(texelFetch(peak, 0).x, push.count_log2);
+    vec3 flux = vec3(sums) / fixed_point_scale(fluxes, push.count_log2);
     vec3 light = whole > 0.0 ? flux / whole : vec3(0.0);
     uint number = atomicAdd(source_count[0], 1u);
     imageStore(slots, pixel, uvec4(number + 1u));

@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer photons;
-layout(set = 0, binding = 1) uniform usamplerBuffer peak;
+layout(set = 0, binding = 1) uniform usamplerBuffer fluxes;
 layout(set = 0, binding = 2, r32ui) uniform uimage2D width_xx;
 layout(set = 0, binding = 3, r32ui) uniform uimage2D width_yy;
 layout(set = 0, binding = 4, r32ui) uniform uimage2D width_xy;
@@ -37,7 +37,7 @@ void main() {
     float most = float(MOST_REACH) * place.extent;
     vec3 shares = width_of(photon, place.normal, place.extent, push.radius, push.radius_scale) / (most * most) + vec3(0.0, 0.0, 0.5);
     float mean = (photon.flux.x + photon.flux.y + photon.flux.z) * (1.0 / 3.0);
-    float scale = fixed_point_scale(texelFetch(peak, 0).x, push.count_log2);
+    float scale = fixed_point_scale(fluxes, push.count_log2);
     uvec3 terms = fixed_point(mean * clamp(shares, 0.0, 1.0), scale, chance_of(photon.position_rs));
     imageAtomicAdd(width_xx, pixel, terms.x);
     imageAtomicAdd(width_yy, pixel, terms.y);

@@ -51,6 +51,7 @@ mod photons_land;
 mod photons_probe;
 mod pieces;
 mod points;
+mod points_filter;
 mod probe;
 mod radiance_maps;
 mod raster;

@@ -126,6 +126,43 @@ pub(crate) fn builtin(name: &str) -> Scene {
     Scene::builtin(name).expect("a built-in scene").expect("it loads")
 }
 
+/// A room of which one wall is missing, under a sky.
+pub(crate) fn open_room() -> (Scene, CameraView) {
+    let mut scene = Scene::empty("open room");
+    let wall = scene.add_material(lambert([0.6, 0.5, 0.4])).expect("a sound material");
+    let mut faces = box_faces([1.0; 3], [wall; 6]);
+    faces.truncate(5);
+    place(&mut scene, faces, DAffine3::IDENTITY);
+    scene.set_sky([1.0, 1.2, 1.5]);
+    (scene, view(DVec3::new(0.2, 0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A closed box with a square lamp in it.
+pub(crate) fn lamp_box() -> (Scene, CameraView) {
+    let mut scene = closed_box(1.0, lambert([0.7, 0.5, 0.3]));
+    let lamp = scene.add_material(Material { emissive: [5.0; 3], ..lambert([0.0; 3]) }).expect("a sound material");
+    let corners = [[-0.3, 0.7, -0.3], [0.3, 0.7, -0.3], [0.3, 0.7, 0.3], [-0.3, 0.7, 0.3]];
+    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
+    (scene, view(DVec3::new(0.1, -0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
+}
+
+/// A floor under the sun, and a wall that it lights.
+pub(crate) fn sunlit_corner() -> (Scene, CameraView) {
+    let mut scene = floor(1.0, lambert([0.7; 3]));
+    let wall = scene.add_material(lambert([0.7, 0.2, 0.2])).expect("a sound material");
+    let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 2.0, -1.0], [-1.0, 2.0, -1.0]];
+    place(&mut scene, vec![quad(corners, wall)], DAffine3::IDENTITY);
+    add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.2, -1.0, -0.7), [3.0; 3]);
+    (scene, view(DVec3::new(0.0, 1.0, 1.5), DVec3::new(0.0, 0.5, -1.0)))
+}
+
+/// A built-in scene and its camera.
+pub(crate) fn with_camera(name: &str) -> (Scene, CameraView) {
+    let scene = builtin(name);
+    let camera = scene.camera_view(None).expect("its camera");
+    (scene, camera)
+}
+
 /// The rsm technique at its default preset with these changes.
 pub(crate) fn settings(changes: &[(&str, &str)]) -> Settings {
     settings_of(Technique::Rsm, changes)

@@ -22,6 +22,7 @@ pub(crate) enum Advance {
 }
 
 /// An image of the last frame and the one of this frame, which a pass writes whole.
+#[cfg_attr(not(test), allow(dead_code, reason = "methods keep buffers; tests keep images"))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HistoryImage {
     pub(crate) last: ImageRef,
@@ -48,6 +49,7 @@ struct Found {
 
 impl Graph<'_> {
     /// An image in two copies. `depends` names all that what it holds is about; another value starts anew.
+    #[cfg_attr(not(test), allow(dead_code, reason = "methods keep buffers; tests keep images"))]
     pub(crate) fn history_image(
         &mut self,
         name: &str,
@@ -84,6 +86,7 @@ impl Graph<'_> {
     }
 
     /// An image that passes modify in place, and its age.
+    #[cfg_attr(not(test), allow(dead_code, reason = "methods keep buffers; tests keep images"))]
     pub(crate) fn state_image(
         &mut self,
         name: &str,

@@ -26,7 +26,6 @@ mod execute;
 #[cfg(feature = "capi")]
 mod hand_out;
 mod interrupt;
-#[cfg_attr(not(test), allow(dead_code, reason = "tests keep something; the methods that do so come later"))]
 pub(crate) mod kept;
 mod key;
 mod mistakes;

@@ -11,7 +11,8 @@ use crate::frame::gbuffer::GBuffer;
 use crate::graph::bindings::{BufferRef, ImageRef, SampledImage, TexelBuffer};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::points::{
-    Draw, DrawPush, Filter, FilterPush, Peak, PeakPush, Shifts, ShiftsPush, Spread, SpreadPush, Widths, WidthsPush,
+    Draw, DrawPush, Filter, FilterPush, Peak, PeakPush, Shifts, ShiftsPush, Spread, SpreadPush, Total, TotalPush,
+    Widths, WidthsPush,
 };
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
@@ -31,7 +32,8 @@ const RADIUS_SCALE: f32 = 1.4;
 
 /// Sums of what photons leave at pixels.
 struct Sums {
-    peak: BufferRef<u32>,
+    /// The largest flux of a photon, and the total of all (glsl/points/fixed_point.glsl).
+    fluxes: BufferRef<u32>,
     /// Red, green, blue.
     flux: [ImageRef; 3],
     /// xx, yy, xy of their ellipses, and x and y of their places in the pixel, for the filter in the world.
@@ -59,8 +61,9 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
 
     let slot = graph.image("caustics", FLOATS, buffer.size);
     let slots = graph.image("points.slots", WORDS, buffer.size);
-    // A pixel has a photon at least.
-    let sources = graph.buffer::<[u32; 4]>("points.sources", SOURCE_TEXELS * photons.count.max(1) as usize);
+    // Of each pixel that has a photon at least.
+    let most_sources = photons.count.max(1).min(buffer.size[0].saturating_mul(buffer.size[1]));
+    let sources = graph.buffer::<[u32; 4]>("points.sources", SOURCE_TEXELS * most_sources as usize);
     let source_count = graph.buffer::<u32>("points.source_count", 1);
     graph.clear_image(&name("filter/clear"), slot, ClearColor::Float([0.0, 0.0, 0.0, 1.0]));
     graph.clear_image(&name("filter/clear-slots"), slots, ClearColor::Uint([0; 4]));
@@ -76,7 +79,7 @@ pub(crate) fn draw(graph: &mut Graph<'_>, buffer: &GBuffer, options: &PointOptio
         all_tiles: u32::from(all_tiles),
         tile_head: listed(tiles.head),
         tile_list: listed(tiles.list),
-        peak: sums.peak.texels(WORDS),
+        fluxes: sums.fluxes.texels(WORDS),
         red,
         green,
         blue,
@@ -128,14 +131,20 @@ fn points(
     photons: KeptPhotons,
 ) -> (Sums, Tiles) {
     let size = buffer.size.map(u32::cast_signed);
-    let peak = graph.buffer::<u32>("points.peak", 1);
-    graph.fill_buffer(&name("draw/clear-peak"), peak, 0);
+    let fluxes = graph.buffer::<u32>("points.fluxes", 2);
+    graph.fill_buffer(&name("draw/clear-fluxes"), fluxes, 0);
     let pass = Peak {
         photons: photons.photons.texels(RECORDS),
-        peak: peak.read_write(),
+        fluxes: fluxes.read_write(),
         push: PeakPush { count: photons.count },
     };
     graph.pass(&name("draw/peak"), pass).threads([photons.count, 1, 1]);
+    let pass = Total {
+        photons: photons.photons.texels(RECORDS),
+        fluxes: fluxes.read_write(),
+        push: TotalPush { count: photons.count, count_log2 },
+    };
+    graph.pass(&name("draw/total"), pass).threads([photons.count, 1, 1]);
 
     let mut cleared = |what: &str| {
         let image = graph.image(&format!("points.{what}"), WORDS, buffer.size);
@@ -160,7 +169,7 @@ fn points(
         surface: buffer.group.clone(),
         world: u32::from(world),
         photons: photons.photons.texels(RECORDS),
-        peak: peak.texels(WORDS),
+        fluxes: fluxes.texels(WORDS),
         red: flux[0].read_write(),
         green: flux[1].read_write(),
         blue: flux[2].read_write(),
@@ -176,7 +185,7 @@ fn points(
         let pass = Widths {
             surface: buffer.group.clone(),
             photons: photons.photons.texels(RECORDS),
-            peak: peak.texels(WORDS),
+            fluxes: fluxes.texels(WORDS),
             width_xx: width_xx.read_write(),
             width_yy: width_yy.read_write(),
             width_xy: width_xy.read_write(),
@@ -186,12 +195,12 @@ fn points(
         let pass = Shifts {
             surface: buffer.group.clone(),
             photons: photons.photons.texels(RECORDS),
-            peak: peak.texels(WORDS),
+            fluxes: fluxes.texels(WORDS),
             shift_x: shift_x.read_write(),
             shift_y: shift_y.read_write(),
             push: ShiftsPush { size, count: photons.count, count_log2 },
         };
         graph.pass(&name("draw/shifts"), pass).threads([photons.count, 1, 1]);
     }
-    (Sums { peak, flux, shapes }, tiles)
+    (Sums { fluxes, flux, shapes }, tiles)
 }

@@ -23,14 +23,16 @@ const WORDS: vk::Format = vk::Format::R32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// Of a kept photon (glsl/points/kept.glsl).
 const TEXELS: usize = 3;
-const KEPT_BYTES: u32 = 48;
+/// The largest record of a place: that of a pixel on which it alone falls (glsl/points/source.glsl).
+const PLACE_BYTES: u32 = 64;
 
 /// How photons land: as ellipses as wide as their neighbours are away.
 const DISCS: Discs = Discs { scale: 1.0, by_beams: true };
 
-/// Photons that are sent, of those asked for.
+/// Photons that are sent, of those asked for: turns have as many places each.
 pub(super) fn sent(options: &PointOptions) -> u32 {
-    options.photons.min(LARGEST_BUFFER / KEPT_BYTES / options.bounces.max(1))
+    let most = LARGEST_BUFFER / PLACE_BYTES / options.bounces.max(1);
+    options.photons.min(most / options.frames * options.frames)
 }
 
 /// Photons where they landed.
@@ -144,5 +146,28 @@ fn due(held: Option<Vec<u64>>, wanted: &[u64], frame: u32) -> (Vec<u64>, Vec<u32
     match (0..count).map(|step| (from + step) % count).find(stale) {
         Some(turn) => (held, vec![turn as u32]),
         None => (vec![0; count], all),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{Options, Preset};
+
+    /// At the ends of the options' ranges, and between.
+    #[test]
+    fn no_buffer_is_too_large() {
+        for photons in [0, 1, 999, 699_050, 1 << 20] {
+            for frames in [1, 3, 8, 64] {
+                for bounces in [0, 1, 2, 4, 5, 16] {
+                    let asked = PointOptions { photons, frames, bounces, ..PointOptions::preset(Preset::Default) };
+                    let sent = sent(&asked);
+                    assert!(sent <= photons && (sent > 0) == (photons > 0), "{sent} of {photons}");
+                    let frames = frames.min(sent.max(1));
+                    let places = sent.max(1).div_ceil(frames) * frames * bounces.max(1);
+                    assert!(places * PLACE_BYTES <= LARGEST_BUFFER, "{photons}, {frames}, {bounces}: {places} places");
+                }
+            }
+        }
     }
 }

@@ -24,7 +24,7 @@ choices! {
 options! {
     /// Options of the `points` caustics method (Larsen & Christensen 2004, section 5).
     PointOptions, "points":
-    /// Photons towards the specular surfaces which lights see; buffers of 128 MiB hold 2.8 million over `bounces`. All of them are sent.
+    /// Photons towards the specular surfaces which lights see; buffers of 128 MiB hold 2.1 million over `bounces`. All of them are sent.
     photons: u32 = 10_000, draft = 2_500, high = 40_000; OptionKind::Integer(0, 1 << 20), "photons", "linear";
     /// Frames over which all of them are sent again where something changed; caustics trail behind what moves by as many. The first frame sends all.
     frames: u32 = 8; OptionKind::Integer(1, 64), "frames", "inverse, of a frame in which something moves";

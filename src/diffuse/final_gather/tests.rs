@@ -1,10 +1,12 @@
 //! Final gathering against paths, and what stands when something moves.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use super::options::FinalGatherOptions;
 use crate::gpu_tests::against_paths::{against_paths, leaks, passes_run};
-use crate::gpu_tests::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, request, view};
+use crate::gpu_tests::scenes::{
+    add_light, builtin, closed_box, lambert, lamp_box, open_room, request, sunlit_corner, view, with_camera,
+};
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
 use crate::renderer::{DiffuseMethod, Frame, FrameRequest, Settings, Slot, Technique, Timing};
@@ -19,42 +21,6 @@ fn settings(options: FinalGatherOptions) -> Settings {
     let mut settings = Settings::new(Technique::Direct, Preset::Default);
     settings.methods.diffuse = DiffuseMethod::FinalGather;
     Settings { final_gather: options, ..settings }
-}
-
-/// A room of which one wall is missing, under a sky.
-fn open_room() -> (Scene, CameraView) {
-    let mut scene = Scene::empty("open room");
-    let wall = scene.add_material(lambert([0.6, 0.5, 0.4])).expect("a sound material");
-    let mut faces = crate::gpu_tests::scenes::box_faces([1.0; 3], [wall; 6]);
-    faces.truncate(5);
-    place(&mut scene, faces, DAffine3::IDENTITY);
-    scene.set_sky([1.0, 1.2, 1.5]);
-    (scene, view(DVec3::new(0.2, 0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
-}
-
-/// A closed box with a square lamp in it.
-fn lamp_box() -> (Scene, CameraView) {
-    let mut scene = closed_box(1.0, lambert([0.7, 0.5, 0.3]));
-    let lamp = scene.add_material(Material { emissive: [5.0; 3], ..lambert([0.0; 3]) }).expect("a sound material");
-    let corners = [[-0.3, 0.7, -0.3], [0.3, 0.7, -0.3], [0.3, 0.7, 0.3], [-0.3, 0.7, 0.3]];
-    place(&mut scene, vec![quad(corners, lamp)], DAffine3::IDENTITY);
-    (scene, view(DVec3::new(0.1, -0.1, 0.9), DVec3::new(0.0, -0.3, -1.0)))
-}
-
-/// A floor under the sun, and a wall that it lights.
-fn sunlit_corner() -> (Scene, CameraView) {
-    let mut scene = floor(1.0, lambert([0.7; 3]));
-    let wall = scene.add_material(lambert([0.7, 0.2, 0.2])).expect("a sound material");
-    let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 2.0, -1.0], [-1.0, 2.0, -1.0]];
-    place(&mut scene, vec![quad(corners, wall)], DAffine3::IDENTITY);
-    add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.2, -1.0, -0.7), [3.0; 3]);
-    (scene, view(DVec3::new(0.0, 1.0, 1.5), DVec3::new(0.0, 0.5, -1.0)))
-}
-
-fn with_camera(name: &str) -> (Scene, CameraView) {
-    let scene = builtin(name);
-    let camera = scene.camera_view(None).expect("its camera");
-    (scene, camera)
 }
 
 /// Every kind of light, mirrors and glass on its way, few bounces and all.

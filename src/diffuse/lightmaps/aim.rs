@@ -17,6 +17,7 @@ pub(super) struct Approximated {
     pub(super) direct: BufferRef<[f32; 4]>,
     /// Bounces along links.
     pub(super) bounces: u32,
+    sky: [f32; 3],
 }
 
 /// Flux that the bounces leave, at most. What is left makes no texel renew itself when the bounces go on later (glsl/lightmaps/rank.comp).
@@ -44,7 +45,6 @@ impl Approximated {
             scene_rays: texels.rays.clone(),
             scene_lights: scene.lights(graph),
             lightmap: texels.group.clone(),
-            arrivals: texels.arrivals.texels(FLOATS4),
             direct: direct.write(),
             push: DirectPush {
                 texel_count: texels.map.count,
@@ -56,11 +56,13 @@ impl Approximated {
                 sky: scene.sky,
             },
         };
-        let rays = u64::from(scene.punctual_count + sample_count + direction_count) * texels.map.used.len() as u64;
+        // A punctual light takes one from each quarter of a texel, and where these are, one asks beforehand.
+        let quarters = if scene.punctual_count > 0 { 4 * (1 + scene.punctual_count) } else { 0 };
+        let rays = u64::from(quarters + sample_count + direction_count) * texels.map.used.len() as u64;
         graph.pass("diffuse/lightmaps/aim/direct", pass).note("rays", rays).threads(texels.threads());
         let bounces =
             options.bounces.map_or_else(|| bounces_for(scene.greatest_albedo()), |bounces| bounces.max(1) - 1);
-        Approximated { direct, bounces }
+        Approximated { direct, bounces, sky: scene.sky }
     }
 
     /// After all bounces, from nothing; `caustics`: what photons bring.
@@ -94,8 +96,9 @@ impl Approximated {
                 before: light.texels(FLOATS4),
                 has_caustics: u32::from(caustics.is_some()),
                 caustics: caustics.map_or(TexelBuffer::absent(), |caustics| caustics.texels(FLOATS4)),
+                arrivals: texels.arrivals.texels(FLOATS4),
                 after: after.write(),
-                push: BouncePush { texel_count: texels.map.count, link_count: texels.link_count },
+                push: BouncePush { texel_count: texels.map.count, link_count: texels.link_count, sky: self.sky },
             };
             graph.pass(&format!("diffuse/lightmaps/aim/bounce.{number}"), pass).threads(texels.threads());
             light = after;

@@ -57,6 +57,14 @@ impl Method for Lightmaps {
         }
     }
 
+    fn reduced(options: &LightmapsOptions) -> Option<String> {
+        let LightmapsOptions { texel, count, links, .. } = *options;
+        let most = texels::most_texels(links);
+        (texel == 0.0 && count > most).then(|| {
+            format!("lightmaps.count is {count}, but a buffer holds {links} links of {most} texels: there are no more")
+        })
+    }
+
     fn lead_in(options: &LightmapsOptions) -> u32 {
         if options.settle == LightmapsSettle::Never { 32 } else { 0 }
     }
@@ -76,7 +84,9 @@ impl Method for Lightmaps {
                 };
                 iim::all(cx.graph, &texels, aim, options)
             }
-            LightmapsSettle::First | LightmapsSettle::Never => renewed(cx.graph, scene, &texels, &light, options),
+            LightmapsSettle::First | LightmapsSettle::Never => {
+                renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)
+            }
         };
         Ok(Some(shade::shade(cx, scene, &texels, shown)))
     }

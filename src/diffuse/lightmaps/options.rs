@@ -37,9 +37,9 @@ choices! {
 options! {
     /// Options of the `lightmaps` diffuse method (Larsen & Christensen 2004).
     LightmapsOptions, "lightmaps":
-    /// Side of a texel; 0: by `count`.
+    /// Side of a texel, or more where a buffer of 128 MiB holds the links of fewer; 0: by `count`.
     texel: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
-    /// Texels on the area of all surfaces; many small surfaces take up to twice as many.
+    /// Texels on the area of all surfaces, and no more than 128 MiB hold links of; many small surfaces take up to twice as many.
     count: u32 = 24_000, draft = 8_000, high = 60_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
     /// Rays that a texel is gathered by.
     rays: u32 = 256, draft = 96, high = 1024; OptionKind::Integer(16, 4096), "rays", "linear";

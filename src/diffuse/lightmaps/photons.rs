@@ -3,7 +3,7 @@
 use super::formats::{FLOATS4, WORD, WORDS4};
 use super::options::{LightmapsInvalidate, LightmapsOptions};
 use super::texels::LightTexels;
-use crate::frame::rays::TracedScene;
+use crate::frame::rays::{Motion, TracedScene};
 use crate::graph::bindings::{BufferRef, ReadWriteBuffer, TexelBuffer};
 use crate::graph::kept::Advance;
 use crate::graph::{Dependence, Graph, hash_of};
@@ -25,24 +25,65 @@ const STEPS: f64 = 1_048_576.0;
 /// Points of a path that are nearer to each other are the same, over the scene's radius.
 const SLACK: f64 = 1e-4;
 
+/// A word whose key, as memory has it, says among which surfaces photons were sent last.
+#[derive(Clone, Copy)]
+pub(super) struct SentAmong(BufferRef<u32>);
+
+impl SentAmong {
+    /// In every frame: memory goes when a frame does not declare it.
+    pub(super) fn declare(graph: &mut Graph<'_>) -> SentAmong {
+        SentAmong(graph.carried_buffer("lightmaps.sent_among", 1))
+    }
+}
+
+/// What happened to surfaces since photons were sent last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Since {
+    /// Nothing.
+    Stand,
+    /// The motion of this frame.
+    Moved,
+    /// Nobody knows: they moved in frames without photons.
+    Unknown,
+}
+
 /// What is kept of photons.
 struct Kept {
     records: BufferRef<[u32; 4]>,
     /// What light each group was sent from.
     keys: BufferRef<u32>,
     received: BufferRef<[f32; 4]>,
+    /// Where it is noted among which surfaces they are sent, and the key that says it.
+    among: BufferRef<u32>,
+    among_key: u64,
+    since: Since,
     age: u32,
 }
 
 impl Kept {
-    fn declare(graph: &mut Graph<'_>, counts: [usize; 3], depends: Option<u64>) -> Kept {
+    fn declare(
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        counts: [usize; 3],
+        (depends, among): (u64, Option<SentAmong>),
+        invalidate: LightmapsInvalidate,
+    ) -> Kept {
         let [records, keys, received] = counts;
-        if let Some(depends) = depends {
+        // Probes may not have found yet what moved.
+        let key_among = |surfaces: u64| hash_of(&("lightmaps.sent_among", depends, surfaces, invalidate));
+        let among_key = key_among(scene.surfaces_key());
+        if let Some(SentAmong(among)) = among {
             let advance = Advance::EveryFrame;
             let (records, age) = graph.state_buffer("lightmaps.photons", records, depends, advance);
             let (keys, _) = graph.state_buffer("lightmaps.photon_keys", keys, depends, advance);
             let (received, _) = graph.state_buffer("lightmaps.photon_map", received, depends, advance);
-            return Kept { records, keys, received, age };
+            let before = scene.motion.as_ref().map(|motion| key_among(motion.from));
+            let since = match graph.held_key(among) {
+                Some(held) if held == among_key => Since::Stand,
+                Some(held) if Some(held) == before => Since::Moved,
+                _ => Since::Unknown,
+            };
+            return Kept { records, keys, received, among, among_key, since, age };
         }
         let records = graph.buffer("lightmaps.sent", records);
         let keys = graph.buffer("lightmaps.sent_keys", keys);
@@ -50,7 +91,13 @@ impl Kept {
         graph.fill_buffer("diffuse/lightmaps/photons/clear-paths", records, 0);
         graph.fill_buffer("diffuse/lightmaps/photons/clear-keys", keys, 0);
         graph.fill_buffer("diffuse/lightmaps/photons/clear-map", received, 0);
-        Kept { records, keys, received, age: 0 }
+        let among = graph.buffer("lightmaps.sent_now", 1);
+        Kept { records, keys, received, among, among_key, since: Since::Unknown, age: 0 }
+    }
+
+    /// Whether photons are there that surfaces may have moved among.
+    fn may_be_crossed(&self) -> bool {
+        self.age > 0 && self.since != Since::Stand
     }
 }
 
@@ -67,33 +114,33 @@ pub(super) enum Brought {
     Caustics,
 }
 
-/// The caustics of punctual lights, which rays from texels do not find; none where nothing is specular.
+/// The caustics of punctual lights, which rays from texels do not find; none where nothing is specular. `among`: where paths are kept over frames.
 pub(super) fn caustics(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     texels: &LightTexels,
     options: &LightmapsOptions,
-    frames: Option<u32>,
+    among: Option<SentAmong>,
 ) -> Option<BufferRef<[f32; 4]>> {
     let reason = match (scene.facts.specular, scene.punctual_count, options.bounces) {
         (false, ..) => "no specular surface",
         (_, 0, _) => "no punctual light",
         (.., Some(1)) => "reflections are more bounces than asked for",
-        _ => return Some(received(graph, scene, texels, options, (Brought::Caustics, frames))),
+        _ => return Some(received(graph, scene, texels, options, (Brought::Caustics, among))),
     };
     graph.skip("diffuse/lightmaps/photons", reason);
     None
 }
 
-/// All light, as photons bring it; `frames`: since something changed, where paths are kept over frames.
+/// All light, as photons bring it.
 pub(super) fn aim(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     texels: &LightTexels,
     options: &LightmapsOptions,
-    frames: Option<u32>,
+    among: Option<SentAmong>,
 ) -> BufferRef<[f32; 4]> {
-    received(graph, scene, texels, options, (Brought::All, frames))
+    received(graph, scene, texels, options, (Brought::All, among))
 }
 
 fn received(
@@ -101,7 +148,7 @@ fn received(
     scene: &TracedScene,
     texels: &LightTexels,
     options: &LightmapsOptions,
-    (brought, frames): (Brought, Option<u32>),
+    (brought, among): (Brought, Option<SentAmong>),
 ) -> BufferRef<[f32; 4]> {
     let sky = scene.sky.iter().any(|&channel| channel > 0.0);
     let lights = match brought {
@@ -115,25 +162,31 @@ fn received(
     let photon_count = group_count * GROUP;
     let sides = 2 * texels.map.surface_count;
     let what = (group_count, options.bounces, options.nearest, scene.radius.to_bits(), brought);
-    let depends = frames.map(|_| hash_of(&(texels.map.key, scene.emission_key(), what)));
+    // Paths are points in space: they are of these shapes, which stand while things move.
+    let depends = hash_of(&(texels.map.key, scene.shapes, scene.emission_key(), what));
     let counts = [(2 * RECORDS * photon_count) as usize, group_count as usize, texels.count()];
-    let kept = Kept::declare(graph, counts, depends);
+    let kept = Kept::declare(graph, scene, counts, (depends, among), options.invalidate);
+    let exact = options.invalidate == LightmapsInvalidate::Exact;
 
     let stale = graph.buffer::<u32>("lightmaps.stale", group_count as usize);
     let pass = Stale {
         scene_lights: scene.lights(graph),
         stale: stale.write(),
         keys: kept.keys.read_write(),
+        among: kept.among.write(),
         push: StalePush {
             group_count,
             groups_a_light,
             light_count: scene.punctual_count,
-            others_key: hash_of(&(scene.emission_key(), scene.sky.map(f32::to_bits))) as u32,
-            all: u32::from(kept.age == 0),
+            sky_key: hash_of(&scene.sky.map(f32::to_bits)) as u32,
+            all: u32::from(kept.age == 0 || (exact && kept.since == Since::Unknown)),
         },
     };
-    graph.pass("diffuse/lightmaps/photons/stale", pass).threads([group_count, 1, 1]);
-    let boxes = crossing(graph, scene, (&kept, stale), photon_count, options, frames);
+    let pass = graph.pass("diffuse/lightmaps/photons/stale", pass).leaves(kept.among, kept.among_key);
+    pass.threads([group_count, 1, 1]);
+    if let Some(motion) = scene.motion.as_ref().filter(|_| exact && kept.age > 0 && kept.since == Since::Moved) {
+        crossing(graph, motion, (&kept, stale), photon_count);
+    }
 
     let touched = graph.buffer::<u32>("lightmaps.touched", sides as usize + 2);
     graph.fill_buffer("diffuse/lightmaps/photons/clear", touched, 0);
@@ -170,8 +223,9 @@ fn received(
         let pass = pass.count("sent", touched, sides as usize).count("rays", touched, sides as usize + 1);
         pass.threads([count, 1, 1]);
     };
-    if let Some(frames) = frames.filter(|_| kept.age > 0 && boxes == 0 && probing_frames(options) > 0) {
-        send(1, frames % GROUP);
+    if kept.age > 0 && !exact {
+        // By the age of what is kept: probes go on while something changes in every frame.
+        send(1, kept.age % GROUP);
     }
     send(0, 0);
     // The nearest ones of what is bright on a small part of a surface alone spread it far over the rest: caustics stay in their texels.
@@ -180,32 +234,21 @@ fn received(
     kept.received
 }
 
-/// Finds the groups whose paths cross what moved; returns how many boxes that is about.
-fn crossing(
-    graph: &mut Graph<'_>,
-    scene: &TracedScene,
-    (kept, stale): (&Kept, BufferRef<u32>),
-    photon_count: u32,
-    options: &LightmapsOptions,
-    frames: Option<u32>,
-) -> usize {
-    let moved = scene.motion.as_ref().filter(|_| kept.age > 0 && frames == Some(0));
-    let Some(motion) = moved.filter(|_| options.invalidate == LightmapsInvalidate::Exact) else { return 0 };
+/// Finds the groups whose paths cross what moved.
+fn crossing(graph: &mut Graph<'_>, motion: &Motion, (kept, stale): (&Kept, BufferRef<u32>), photon_count: u32) {
     let corners = motion.before.iter().chain(&motion.after).flatten();
     let corners: Vec<[f32; 4]> = corners.map(|corner| corner.extend(0.0).to_array()).collect();
     let boxes = graph.upload("lightmaps.moved_boxes", &corners, Dependence::GEOMETRY);
-    let box_count = (corners.len() / 2) as u32;
     let pass = Crossed {
         records: kept.records.texels(WORDS4),
         boxes: boxes.texels(FLOATS4),
         stale: stale.read_write(),
-        push: CrossedPush { photon_count, box_count },
+        push: CrossedPush { photon_count, box_count: (corners.len() / 2) as u32 },
     };
     graph.pass("diffuse/lightmaps/photons/crossed", pass).threads([photon_count, 1, 1]);
-    box_count as usize
 }
 
-/// Estimates what texels receive of the photons on their surfaces, where these changed.
+/// Estimates what texels receive of the photons on their surfaces, where these changed, or, where something moved, what texels see of their surfaces.
 fn estimate(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
@@ -249,6 +292,7 @@ fn estimate(
         push: EstimatePush {
             texel_count: texels.map.count,
             nearest,
+            all: u32::from(kept.may_be_crossed()),
             steps_a_watt: (STEPS * f64::from(photon_count) / power) as f32,
         },
     };

@@ -40,17 +40,18 @@ impl Kept {
     }
 }
 
-/// Declares what a frame does for the maps; returns what they show.
+/// Declares what a frame does for the maps of the scene of that identity; returns what they show.
 pub(super) fn renewed(
     graph: &mut Graph<'_>,
-    scene: &TracedScene,
+    (scene, identity): (&TracedScene, u64),
     texels: &LightTexels,
     light: &Approximated,
     options: &LightmapsOptions,
 ) -> BufferRef<[f32; 4]> {
-    let depends =
-        hash_of(&(texels.map.key, options.rays, options.links, options.samples, options.bounces, options.source));
-    let content = hash_of(&(depends, scene.key, scene.sky.map(f32::to_bits)));
+    let &LightmapsOptions { rays, samples, bounces, source, photons, nearest, .. } = options;
+    let depends = hash_of(&(identity, texels.map.key, rays, texels.link_count, samples, bounces, source));
+    let content = hash_of(&(depends, scene.key, scene.sky.map(f32::to_bits), photons, nearest));
+    let among = photons::SentAmong::declare(graph);
     let kept = Kept::declare(graph, texels.count(), depends);
     // How long nothing else has changed, and whether that is what all texels were gathered of.
     let (turn, frames) = graph.state_buffer::<u32>("lightmaps.turn", 1, content, Advance::EveryFrame);
@@ -64,10 +65,10 @@ pub(super) fn renewed(
     let at_once = kept.age == 0 && options.settle == LightmapsSettle::First;
     let aim = match options.source {
         LightmapsSource::Rays => {
-            let caustics = photons::caustics(graph, scene, texels, options, Some(frames));
+            let caustics = photons::caustics(graph, scene, texels, options, Some(among));
             approximated(graph, texels, (light, caustics), (depends, at_once), options)
         }
-        LightmapsSource::Photons => photons::aim(graph, scene, texels, options, Some(frames)),
+        LightmapsSource::Photons => photons::aim(graph, scene, texels, options, Some(among)),
     };
     let now = graph.buffer::<[f32; 4]>("lightmaps.now", texels.count());
     graph.fill_buffer("diffuse/lightmaps/renewal/clear-now", now, 0);

@@ -10,6 +10,17 @@ use crate::graph::bindings::BufferRef;
 use crate::shaders::groups::{Lightmap as LightmapGroup, Lobes, SceneRays};
 use crate::shaders::lightmaps::{Cuts, CutsPush, Links, LinksPush, Place, PlacePush, Probe, ProbePush};
 
+/// Links that a buffer holds: 128 MiB, which every device lets a kernel see of one.
+const LINKS: u32 = (1 << 27) / 8;
+
+/// Specular events of a link at most, where bounces have no limit.
+const MOST_EVENTS: u32 = 7;
+
+/// Texels of which a buffer holds so many links each.
+pub(super) const fn most_texels(links: u32) -> u32 {
+    LINKS / links
+}
+
 /// The texels of a frame.
 pub(super) struct LightTexels {
     pub(super) map: Arc<Lightmap>,
@@ -32,8 +43,8 @@ impl LightTexels {
         scene: &TracedScene,
         options: &LightmapsOptions,
     ) -> Option<LightTexels> {
-        let wanted = if options.texel > 0.0 { Texels::Size(options.texel) } else { Texels::Count(options.count) };
-        let map = scene.lightmap(wanted);
+        let most = most_texels(options.links);
+        let map = scene.lightmap(Texels { size: options.texel, count: options.count, most });
         let texel_count = map.count;
         if map.used.is_empty() {
             graph.skip("diffuse/lightmaps", "no surface that light falls on");
@@ -81,7 +92,8 @@ impl LightTexels {
         pass.count("hidden", counts, 0).count("cut", counts, 1).threads(threads);
         group.lightmap_flags = flags.texels(WORD);
 
-        let link_count = options.links;
+        // More surfaces than that have a texel each.
+        let link_count = options.links.min(LINKS / texel_count).max(1);
         let links = graph.buffer::<[u32; 2]>("lightmaps.links", count * link_count as usize);
         let arrivals = graph.buffer::<[f32; 4]>("lightmaps.arrivals", 2 * count);
         let facts = &scene.facts;
@@ -91,7 +103,12 @@ impl LightTexels {
             lobes: Lobes { specular_lobes: u32::from(facts.specular), transmissive: u32::from(facts.transmissive) },
             links: links.write(),
             arrivals: arrivals.write(),
-            push: LinksPush { texel_count, link_count },
+            push: LinksPush {
+                texel_count,
+                link_count,
+                link_events: options.bounces.map_or(MOST_EVENTS, |bounces| bounces.saturating_sub(2)),
+                arrival_events: options.bounces.map_or(MOST_EVENTS, |bounces| bounces.saturating_sub(1)),
+            },
         };
         let pass = graph.pass("diffuse/lightmaps/texels/links", pass);
         pass.note("rays", map.used.len() as u64 * u64::from(link_count)).threads(threads);

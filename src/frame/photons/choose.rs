@@ -26,7 +26,7 @@ const LEVELS_OF_PASS: usize = 2;
 
 /// Words of the choice (glsl/photons/choice.glsl).
 const CHOICE_LEVEL: usize = 3;
-pub(crate) const CHOICE_PHOTONS: usize = 5;
+const CHOICE_PHOTONS: usize = 5;
 const CHOICE_BLOCKS: usize = 6;
 const CHOICE_WORDS: usize = 7;
 

@@ -13,6 +13,9 @@ const LEAST: f64 = 0.35;
 /// Nodes farther from all triangles, in texels, are in no cell that shows some of the surface.
 const FARTHEST: f64 = 1.5;
 
+/// Cells along an axis at most: whoever asks for finer ones takes larger ones in the end.
+const MOST_CELLS: f64 = 16_777_216.0;
+
 /// Parts of a triangle on a texel's area, and along its edges at most.
 const PARTS: f64 = 16.0;
 const MOST_PARTS: f64 = 2048.0;
@@ -36,7 +39,7 @@ impl Lattice {
     pub(super) fn of(chart: &Chart, texel: f64) -> Lattice {
         let cells = chart.extent.to_array().map(|extent| {
             let count = extent / texel;
-            if count < LEAST { 0 } else { (count - 1e-3).ceil().max(1.0) as u32 }
+            if count < LEAST { 0 } else { (count - 1e-3).ceil().clamp(1.0, MOST_CELLS) as u32 }
         });
         let step = |axis: usize| match cells[axis] {
             0 => chart.extent[axis].max(1e-30),

@@ -27,6 +27,10 @@ const RELATIVE: [f64; 2] = [0.25, 2.0];
 /// Texels at most, over those that the area alone asks for: many small surfaces take more.
 const MOST: u64 = 2;
 
+/// Steps towards coarser texels, at most, for that and where there may not be more: each makes them 1.2 times as large.
+const COARSER: u32 = 24;
+const COARSEST: u32 = 200;
+
 /// The light maps of a scene.
 pub(crate) struct Lightmap {
     /// Texels, those that nobody reads included.
@@ -44,11 +48,13 @@ pub(crate) struct Lightmap {
 
 /// How finely a light map is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Texels {
-    /// m
-    Size(f64),
-    /// As many on the area of all surfaces.
-    Count(u32),
+pub(crate) struct Texels {
+    /// Of each, m; 0: as `count` says.
+    pub(crate) size: f64,
+    /// On the area of all surfaces.
+    pub(crate) count: u32,
+    /// There are never more, unless there are more surfaces: texels are larger for it.
+    pub(crate) most: u32,
 }
 
 /// What of the triangles takes light.
@@ -76,25 +82,35 @@ impl Taking<'_> {
 /// The size of a texel on each surface, m. Where their number is asked for, it follows the fourth root of the surface's area: a wide ground outside does not take
 /// all texels of the room.
 fn sizes(charts: &[Chart], triangles: &[TracedTriangle], texels: Texels) -> Vec<f64> {
-    let wanted = match texels {
-        Texels::Size(size) => return vec![size; charts.len()],
-        Texels::Count(wanted) => u64::from(wanted.max(1)),
-    };
     let area = |chart: &Chart| -> f64 { chart.triangles.iter().map(|&number| triangles[number as usize].area()).sum() };
     let areas: Vec<f64> = charts.iter().map(area).collect();
     let mean = areas.iter().map(|area| area * area).sum::<f64>() / areas.iter().sum::<f64>().max(1e-300);
     let relative: Vec<f64> =
         areas.iter().map(|area| (area / mean).powf(0.25).clamp(RELATIVE[0], RELATIVE[1])).collect();
-    let shares = charts.iter().zip(&areas).zip(&relative);
-    let shares = shares.map(|((chart, area), size)| f64::from(chart.sides) * area / (size * size));
-    let size = (shares.sum::<f64>() / wanted as f64).sqrt().max(1e-30);
-    let sized = |step: i32| relative.iter().map(move |relative| relative * size * 1.2_f64.powi(step));
-    let count = |step: i32| -> u64 {
-        let lattices = charts.iter().zip(sized(step));
-        lattices.map(|(chart, texel)| u64::from(chart.sides) * Lattice::of(chart, texel).node_count()).sum()
+    let count = |sizes: &[f64]| -> u64 {
+        let lattices = charts.iter().zip(sizes);
+        lattices.map(|(chart, texel)| u64::from(chart.sides) * Lattice::of(chart, *texel).node_count()).sum()
     };
-    let step = (0..24).find(|&step| count(step) <= MOST * wanted).unwrap_or(24);
-    sized(step).collect()
+    // Each step takes three in ten texels of surfaces that have many.
+    let coarsened = |mut sizes: Vec<f64>, most: u64, steps: u32| {
+        for _ in 0..steps {
+            if count(&sizes) <= most {
+                break;
+            }
+            sizes.iter_mut().for_each(|size| *size *= 1.2);
+        }
+        sizes
+    };
+    let wanted = u64::from(texels.count.clamp(1, texels.most));
+    let sizes = if texels.size > 0.0 {
+        vec![texels.size; charts.len()]
+    } else {
+        let shares = charts.iter().zip(&areas).zip(&relative);
+        let shares = shares.map(|((chart, area), size)| f64::from(chart.sides) * area / (size * size));
+        let size = (shares.sum::<f64>() / wanted as f64).sqrt().max(1e-30);
+        coarsened(relative.iter().map(|relative| relative * size).collect(), MOST * wanted, COARSER)
+    };
+    coarsened(sizes, u64::from(texels.most), COARSEST)
 }
 
 impl Lightmap {

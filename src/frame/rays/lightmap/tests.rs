@@ -99,5 +99,21 @@ fn both_sides_have_texels_where_both_are_seen() {
     assert_eq!(of(&[2], &[0b11], &[1.0, 0.0]), [2, 0]);
     assert_eq!(of(&[0], &[0b11], &[1.0, 1.0]), [0, 0]);
     let taking = Taking { sides: &[1], backs: &[], areas: &[1.0, 1.0] };
-    assert_eq!(Lightmap::new(&all, &parts, &taking, Texels::Count(100)).count, 0);
+    assert_eq!(Lightmap::new(&all, &parts, &taking, Texels { size: 0.0, count: 100, most: 1000 }).count, 0);
+}
+
+/// However fine texels are asked for, there are no more than there may be.
+#[test]
+fn texels_are_no_more_than_there_may_be() {
+    let all = floor(200.0, 100.0);
+    let found = charts(&all, 0..2, |_| 2);
+    for (size, count) in [(1e-9, 1), (1e-5, 1), (0.5, 1), (0.0, 1_000_000), (0.0, 4000)] {
+        for most in [500, 4_194_304] {
+            let texels = Texels { size, count, most };
+            let lattices = found.iter().zip(sizes(&found, &all, texels));
+            let made: u64 = lattices.map(|(chart, size)| 2 * Lattice::of(chart, size).node_count()).sum();
+            assert!(made <= u64::from(most), "{texels:?}: {made}");
+            assert!(made > u64::from(most) / 4 || made > u64::from(count) / 2, "{texels:?}: {made}");
+        }
+    }
 }
