@@ -3,9 +3,10 @@
 use super::formats::{FLOATS4, WORDS2};
 use super::options::LightmapsOptions;
 use super::texels::LightTexels;
-use crate::frame::rays::TracedScene;
+use crate::frame::rays::{Lightmap, TracedScene};
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::shaders::groups::{Lightmap as LightmapGroup, SceneRays};
 use crate::shaders::lightmaps::{Bounce, BouncePush, Direct, DirectPush};
 
 /// Bounces at most.
@@ -27,6 +28,50 @@ fn bounces_for(albedo: f64) -> u32 {
     ((LEFT.ln() / albedo.clamp(1e-3, 0.99).ln()).ceil() as u32).clamp(1, MOST_BOUNCES)
 }
 
+/// Texels that lights shine on.
+pub(super) struct Lit<'a> {
+    pub(super) map: &'a Lightmap,
+    pub(super) rays: &'a SceneRays,
+    pub(super) group: &'a LightmapGroup,
+    /// As [`LightTexels`] has them.
+    pub(super) arrivals: BufferRef<[f32; 4]>,
+}
+
+impl Lit<'_> {
+    /// Declares the pass that finds what comes of the lights.
+    pub(super) fn declare(
+        &self,
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        direct: BufferRef<[f32; 4]>,
+        options: &LightmapsOptions,
+        name: &str,
+    ) {
+        let emissive = scene.emissive_count > 0;
+        let sky = scene.sky.iter().any(|&channel| channel > 0.0);
+        let sample_count = if emissive { options.samples } else { 0 };
+        let direction_count = if emissive || sky { options.samples } else { 0 };
+        let pass = Direct {
+            scene_rays: self.rays.clone(),
+            scene_lights: scene.lights(graph),
+            lightmap: self.group.clone(),
+            arrivals: self.arrivals.texels(FLOATS4),
+            direct: direct.write(),
+            push: DirectPush {
+                texel_count: self.map.count,
+                light_count: scene.punctual_count,
+                emitter_count: scene.emissive_count,
+                sample_count,
+                direction_count,
+                density_scale: scene.emissive_density_scale,
+                sky: scene.sky,
+            },
+        };
+        let rays = u64::from(scene.punctual_count + sample_count + direction_count) * self.map.used.len() as u64;
+        graph.pass(name, pass).note("rays", rays).threads([self.map.count, 1, 1]);
+    }
+}
+
 impl Approximated {
     /// Declares the pass that finds what comes of the lights.
     pub(super) fn declare(
@@ -36,28 +81,8 @@ impl Approximated {
         options: &LightmapsOptions,
     ) -> Approximated {
         let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count());
-        let emissive = scene.emissive_count > 0;
-        let sky = scene.sky.iter().any(|&channel| channel > 0.0);
-        let sample_count = if emissive { options.samples } else { 0 };
-        let direction_count = if emissive || sky { options.samples } else { 0 };
-        let pass = Direct {
-            scene_rays: texels.rays.clone(),
-            scene_lights: scene.lights(graph),
-            lightmap: texels.group.clone(),
-            arrivals: texels.arrivals.texels(FLOATS4),
-            direct: direct.write(),
-            push: DirectPush {
-                texel_count: texels.map.count,
-                light_count: scene.punctual_count,
-                emitter_count: scene.emissive_count,
-                sample_count,
-                direction_count,
-                density_scale: scene.emissive_density_scale,
-                sky: scene.sky,
-            },
-        };
-        let rays = u64::from(scene.punctual_count + sample_count + direction_count) * texels.map.used.len() as u64;
-        graph.pass("diffuse/lightmaps/aim/direct", pass).note("rays", rays).threads(texels.threads());
+        let lit = Lit { map: &texels.map, rays: &texels.rays, group: &texels.group, arrivals: texels.arrivals };
+        lit.declare(graph, scene, direct, options, "diffuse/lightmaps/aim/direct");
         let bounces =
             options.bounces.map_or_else(|| bounces_for(scene.greatest_albedo()), |bounces| bounces.max(1) - 1);
         Approximated { direct, bounces }
