@@ -86,7 +86,8 @@ pub(super) fn groups(
         let [a, b, c] =
             corners.map(|corner| instance.world.transform_vector3(wide(primitive.positions[corner as usize])));
         let front = (b - a).cross(c - a);
-        if front == DVec3::ZERO {
+        // Without an area it shows nothing; beyond the range of floats no viewer finds it.
+        if front == DVec3::ZERO || !front.is_finite() {
             continue;
         }
         let Some(chart) = chart else {
