@@ -7,7 +7,9 @@ use std::{env, fs};
 fn main() {
     if env::args().len() > 1 {
         // A debug build takes shaders from the folder IRRADIA_SHADERS and asks its build script to compile them.
-        eprintln!("this is the published package, which has no compiler of GLSL: unset IRRADIA_SHADERS, or work in a checkout");
+        eprintln!(
+            "this is the published package, which has no compiler of GLSL: unset IRRADIA_SHADERS, or work in a checkout"
+        );
         exit(1);
     }
     println!("cargo::rerun-if-changed=compiled");

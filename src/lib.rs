@@ -1,8 +1,9 @@
 //! irradia: a headless Vulkan engine for global illumination.
 //!
-//! [`renderer`] makes frames of a [`scene`]; [`metrics`] says how far they are from a [`mod@reference`]. Features: `cli` (the program), `plots` (the module `bench`), `flip` (FLIP among the
+//! [`renderer`] makes frames of a [`scene`]; [`mod@bake`] writes its light into a scene that any viewer shows; [`metrics`] says how far they are from a [`mod@reference`]. Features: `cli` (the program), `plots` (the module `bench`), `flip` (FLIP among the
 //! errors; compiles C++), all on by default, and `capi` (the C interface).
 
+pub mod bake;
 #[cfg(feature = "plots")]
 pub mod bench;
 #[cfg(feature = "capi")]

@@ -4,6 +4,7 @@
 //! 1 a failure said in one sentence, 2 wrong usage.
 
 mod attributes;
+mod bake;
 mod bench;
 mod compare;
 mod devices;
@@ -41,6 +42,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Render(render::RenderArgs),
+    Bake(bake::BakeArgs),
     Bench(bench::BenchArgs),
     Sweep(sweep::SweepArgs),
     Compare(compare::CompareArgs),
@@ -64,6 +66,7 @@ pub(crate) fn main() -> ExitCode {
     let invocation = Invocation { global: &cli.global, terminal: &terminal };
     let done = match &cli.command {
         Command::Render(args) => render::run(args, &invocation),
+        Command::Bake(args) => bake::run(args, &invocation),
         Command::Bench(args) => bench::run(args, &invocation),
         Command::Sweep(args) => sweep::run(args, &invocation),
         Command::Compare(args) => compare::run(args, &invocation),

@@ -17,6 +17,14 @@ pub(crate) struct SceneArgs {
     /// The camera, by name or index [default: the scene's first, or a view of the whole scene if it has none]
     #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) camera: Option<String>,
+    #[command(flatten)]
+    source: SourceArgs,
+}
+
+/// What is added to the scene, and what reading it may do.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "View and light")]
+pub(crate) struct SourceArgs {
     /// A light to add, repeatable: sun:AZIMUTH,ELEVATION[,W/m²], point:X,Y,Z,W/sr or spot:…
     #[arg(long = "light", value_name = "LIGHT", value_parser = LightSpec::parse, allow_hyphen_values = true)]
     lights: Vec<LightSpec>,
@@ -56,7 +64,7 @@ pub(crate) struct LoadedScene {
     pub(crate) load_ms: f64,
 }
 
-impl SceneArgs {
+impl SourceArgs {
     /// Opens a path or a built-in scene, adds the lights, and warns of what the user should know.
     pub(crate) fn open(&self, spec: &str) -> anyhow::Result<LoadedScene> {
         let start = Instant::now();
@@ -70,6 +78,13 @@ impl SceneArgs {
         }
         warn_of(&scene, "add one with --light sun:45,60 or --light point:X,Y,Z,W/sr, or a sky with --sky 1,1,1");
         Ok(LoadedScene { scene, load_ms })
+    }
+}
+
+impl SceneArgs {
+    /// As [`SourceArgs::open`].
+    pub(crate) fn open(&self, spec: &str) -> anyhow::Result<LoadedScene> {
+        self.source.open(spec)
     }
 
     /// Where the scene, as it is now, is seen from.

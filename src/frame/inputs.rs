@@ -37,6 +37,8 @@ pub(crate) struct FrameInputs<'f> {
     /// Present where some method takes them and something shines.
     pub(crate) lights: Option<LightViews>,
     pub(crate) traced: Option<&'f TracedScene>,
+    /// Whether light that a method keeps on surfaces is taken off the device (`stored_light.rs`), and on how many texels along a side of its own.
+    pub(crate) stored_light: Option<u32>,
     /// What methods that declared earlier offer to later ones.
     pub(crate) offers: Offers,
     /// Whether mirrors show lamps and the sky in the slot `direct`; else whoever follows reflections has to show them.

@@ -27,6 +27,7 @@ pub(crate) mod rays;
 pub(crate) mod regions;
 pub(crate) mod scene_data;
 mod sent_list;
+pub(crate) mod stored_light;
 pub(crate) mod textures;
 pub(crate) mod tonemap;
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Which pieces a frame consists of: the settings' methods, as far as the scene and the request need them.
 
+use std::rc::Rc;
+
 use super::estimates::Means;
 use super::frame::FrameRequest;
 use super::methods::{Filler, MethodEntry};
@@ -14,6 +16,7 @@ use crate::frame::light_views::light_views;
 use crate::frame::offers::Offers;
 use crate::frame::rays::TracedScene;
 use crate::frame::scene_data::SceneData;
+use crate::frame::stored_light::StoredLight;
 use crate::frame::tonemap::tonemap;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ImageRef};
@@ -26,6 +29,8 @@ pub(crate) struct Declared {
     /// The slots that something fills.
     slots: Vec<(Slot, ImageRef)>,
     pub(crate) image: Option<ImageRef>,
+    /// Present if a method that ran keeps its light on surfaces.
+    pub(crate) stored_light: Option<Rc<StoredLight>>,
     pub(crate) display: Option<BufferRef<u32>>,
 }
 
@@ -106,6 +111,7 @@ pub(crate) struct Shared {
     geometry: Geometry,
     view: View,
     time: FrameTime,
+    stored_light: Option<u32>,
     pub(crate) surface: GBuffer,
 }
 
@@ -131,7 +137,7 @@ impl Shared {
         };
         let surface = gbuffer(graph, data, &geometry, &facts, &view);
         let time = FrameTime { index: request.index, step: request.time_step };
-        Shared { facts, geometry, view, time, surface }
+        Shared { facts, geometry, view, time, stored_light: request.stored_light, surface }
     }
 
     /// Declares the light views that the methods take.
@@ -157,6 +163,7 @@ impl Shared {
             caches: settings.volumes.cache_settings(),
             lights,
             traced,
+            stored_light: self.stored_light,
             offers: Offers::default(),
             mirrored_lamps: settings.methods.shows_lamps(),
             follows_reflections: settings.follows_reflections(),
@@ -211,7 +218,8 @@ pub(crate) fn declare(
             slots.push((slot, estimated(graph, slot, request.size, (pixels, means.key), MEANS_AT_ONCE)));
         }
     }
-    let mut declared = Declared { slots, image: None, display: None };
+    let stored_light = frame.offers.get();
+    let mut declared = Declared { slots, image: None, stored_light, display: None };
     if request.wants_image() {
         let image = compose(graph, &shared.surface, scene.sky(), |slot| declared.slot(slot));
         declared.image = Some(image);

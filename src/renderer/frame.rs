@@ -35,6 +35,8 @@ pub struct FrameRequest {
     pub read_back: bool,
     /// Hears how far the frame is, and may stop it.
     pub progress: Option<Progress>,
+    /// Whether the light that methods keep on surfaces is taken off the device, and on how many texels along a side of theirs.
+    pub(crate) stored_light: Option<u32>,
     /// What is left in a host's images and buffers.
     #[cfg(feature = "capi")]
     pub(crate) handed: super::handed::Handed,
@@ -54,6 +56,7 @@ impl FrameRequest {
             timing: Timing::Frame,
             read_back: true,
             progress: None,
+            stored_light: None,
             #[cfg(feature = "capi")]
             handed: super::handed::Handed::default(),
         }

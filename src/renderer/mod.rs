@@ -28,6 +28,7 @@ mod frame;
 mod hand_out;
 #[cfg(feature = "capi")]
 mod handed;
+mod light_on_surfaces;
 pub(crate) mod limits;
 mod methods;
 mod render;
@@ -40,6 +41,7 @@ pub use context::Context;
 pub use frame::{Estimate, Frame, FrameRequest};
 #[cfg(feature = "capi")]
 pub(crate) use handed::Handed;
+pub(crate) use light_on_surfaces::SurfaceLight;
 pub use render::Renderer;
 pub use repeat::{RepeatError, Repetition, check_piece};
 pub use settings::{Settings, SettingsError, options};

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::choices::{Methods, UnknownMethod};
 use super::technique::{Technique, UnknownTechnique};
 use crate::method::{
-    LightOptions, OptionFault, OptionInfo, Options, Piece, Preset, UnknownPreset, for_all_methods, written,
+    LightOptions, OptionFault, OptionInfo, OptionKind, Options, Piece, Preset, UnknownPreset, for_all_methods, written,
 };
 use crate::slot::Slot;
 
@@ -149,7 +149,13 @@ impl Settings {
         let unknown = SettingsError::UnknownKey { key: key.to_owned(), known: self.keys().join(", ") };
         let Some((name, option)) = key.split_once('.') else { return Err(unknown) };
         let piece = self.pieces_mut().into_iter().find(|piece| piece.key() == name);
-        let piece = piece.filter(|piece| piece.table().iter().any(|info| info.name == option)).ok_or(unknown)?;
+        let info = |piece: &&mut dyn Piece| piece.table().iter().find(|info| info.name == option).map(|info| info.kind);
+        let (piece, kind) = piece.and_then(|piece| info(&piece).map(|kind| (piece, kind))).ok_or(unknown)?;
+        // Choices go by names, also where these read like something else.
+        let value = match (kind, value) {
+            (OptionKind::Choice(_), Value::Bool(yes)) => Value::String(yes.to_string()),
+            (_, value) => value,
+        };
         Ok(piece.set(option, value)?)
     }
 

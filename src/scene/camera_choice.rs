@@ -34,16 +34,22 @@ impl Scene {
                 Some(by_name.or_else(by_node).or_else(by_index).ok_or_else(|| self.unknown_camera(name, &placed))?)
             }
         };
-        let Some((name, node, camera)) = chosen else {
-            return Ok(auto_view::find(self));
-        };
+        Ok(chosen.map_or_else(|| auto_view::find(self), |placed| self.view_of(placed)))
+    }
+
+    /// The views of all placed cameras, in the same order.
+    pub fn camera_views(&self) -> Vec<CameraView> {
+        self.placed_cameras().iter().map(|placed| self.view_of(placed)).collect()
+    }
+
+    fn view_of(&self, (name, node, camera): &(String, NodeId, CameraId)) -> CameraView {
         let world = self.world_transform(*node);
-        Ok(CameraView {
+        CameraView {
             world: rigid(world.matrix3, world.translation),
             projection: self.cameras()[camera.0].projection,
             name: name.clone(),
             automatic: false,
-        })
+        }
     }
 
     fn unknown_camera(&self, name: &str, placed: &[(String, NodeId, CameraId)]) -> SceneError {

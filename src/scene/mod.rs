@@ -18,6 +18,7 @@
 //! | `cutout` | what alpha leaves of a surface, material by material |
 //! | `triangle_cells` | a triangle cut into equal cells |
 //! | `sampling` | textures read as shaders read them |
+//! | `appearance` | what points of a surface reflect diffusely and send out |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
 //! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
 //! | `bvh` | the hierarchy that shaders trace rays through |
@@ -29,6 +30,7 @@
 //! Units are metres, radians, seconds and watts; colours are linear Rec. 709. Transforms are f64 throughout.
 
 mod animation;
+mod appearance;
 mod auto_view;
 mod builtin;
 mod bulk;
@@ -77,6 +79,7 @@ pub use mesh::{Bounds, Instance, Mesh, Primitive};
 pub(crate) use mesh::{CHUNK, first_endless};
 pub use world::{FRAME_RATE, Node, Revisions, Scene};
 
+pub(crate) use appearance::{Appearance, PointLook};
 pub(crate) use cutout::{Cutout, cutout};
 pub(crate) use digest::Digest;
 pub(crate) use emission::EmissiveCells;

@@ -1,5 +1,6 @@
 //! Tests from outside: the library and the program as others use them. One file a capability, one program to link.
 
+mod bake;
 mod cli;
 mod compare;
 mod files;

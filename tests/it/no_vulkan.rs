@@ -14,7 +14,7 @@ fn folder(test: &str) -> PathBuf {
 fn assert_all_fail(test: &str, variables: &[(&str, &Path)], arguments: &[&str], words: &[&str]) {
     let folder = folder(test);
     let file = |name: &str| folder.join(name).to_string_lossy().into_owned();
-    let commands: [&[&str]; 5] = [
+    let commands: [&[&str]; 6] = [
         &["render", "cornell-point", "-o", &file("a.exr")],
         &["render", "cornell-point", "-o", &file("a.png"), "--frames", "0..2"],
         &[
@@ -30,13 +30,15 @@ fn assert_all_fail(test: &str, variables: &[(&str, &Path)], arguments: &[&str], 
         ],
         &["graph", "cornell-point", "--dot", &file("a.dot")],
         &["reference", "cornell-point", "--spp", "16", "--no-cache", "-o", &file("a.exr")],
+        &["bake", "cornell-point", "-o", &file("a.glb")],
     ];
     for command in commands {
+        let size: &[&str] = if command[0] == "bake" { &[] } else { &["--size", "16x16"] };
         let mut program = Command::new(env!("CARGO_BIN_EXE_irradia"));
         let output = program
             .args(command)
             .args(arguments)
-            .args(["--size", "16x16"])
+            .args(size)
             .envs(variables.iter().copied())
             .output()
             .expect("the program starts");

@@ -23,6 +23,20 @@ fn settings_written_before_there_were_tables_of_options_still_load() {
     }
 }
 
+/// A choice may read like a yes or a no.
+#[test]
+fn settling_is_yes_or_no_too() {
+    let mut settings = Settings::new(Technique::Lightmaps, Preset::Default);
+    for (value, expected) in [("true", "always"), ("false", "never"), ("first", "first")] {
+        settings.set("lightmaps.settle", value).expect("a choice");
+        assert_eq!(settings.options()["lightmaps"]["settle"], expected);
+        let read: Settings = serde_json::from_value(serde_json::to_value(&settings).expect("JSON")).expect("settings");
+        assert_eq!(read, settings);
+    }
+    let other = settings.set("lightmaps.source", "true").expect_err("no such choice").to_string();
+    assert!(other.contains("lightmaps.source") && other.contains("photons"), "{other}");
+}
+
 /// `docs/settings.md` as it ought to be; `IRRADIA_WRITE_DOCS=1 cargo test --test it settings` writes it.
 #[test]
 fn the_documented_settings_are_those_there_are() {

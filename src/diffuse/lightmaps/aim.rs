@@ -3,9 +3,10 @@
 use super::formats::{FLOATS4, WORDS2};
 use super::options::LightmapsOptions;
 use super::texels::LightTexels;
-use crate::frame::rays::TracedScene;
+use crate::frame::rays::{Lightmap, TracedScene};
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::shaders::groups::{Lightmap as LightmapGroup, SceneRays};
 use crate::shaders::lightmaps::{Bounce, BouncePush, Direct, DirectPush};
 
 /// Bounces at most.
@@ -28,26 +29,34 @@ fn bounces_for(albedo: f64) -> u32 {
     ((LEFT.ln() / albedo.clamp(1e-3, 0.99).ln()).ceil() as u32).clamp(1, MOST_BOUNCES)
 }
 
-impl Approximated {
+/// Texels that lights shine on.
+pub(super) struct Lit<'a> {
+    pub(super) map: &'a Lightmap,
+    pub(super) rays: &'a SceneRays,
+    pub(super) group: &'a LightmapGroup,
+}
+
+impl Lit<'_> {
     /// Declares the pass that finds what comes of the lights.
     pub(super) fn declare(
+        &self,
         graph: &mut Graph<'_>,
         scene: &TracedScene,
-        texels: &LightTexels,
+        direct: BufferRef<[f32; 4]>,
         options: &LightmapsOptions,
-    ) -> Approximated {
-        let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count());
+        name: &str,
+    ) {
         let emissive = scene.emissive_count > 0;
         let sky = scene.sky.iter().any(|&channel| channel > 0.0);
         let sample_count = if emissive { options.samples } else { 0 };
         let direction_count = if emissive || sky { options.samples } else { 0 };
         let pass = Direct {
-            scene_rays: texels.rays.clone(),
+            scene_rays: self.rays.clone(),
             scene_lights: scene.lights(graph),
-            lightmap: texels.group.clone(),
+            lightmap: self.group.clone(),
             direct: direct.write(),
             push: DirectPush {
-                texel_count: texels.map.count,
+                texel_count: self.map.count,
                 light_count: scene.punctual_count,
                 emitter_count: scene.emissive_count,
                 sample_count,
@@ -58,8 +67,22 @@ impl Approximated {
         };
         // A punctual light takes one from each quarter of a texel, and where these are, one asks beforehand.
         let quarters = if scene.punctual_count > 0 { 4 * (1 + scene.punctual_count) } else { 0 };
-        let rays = u64::from(quarters + sample_count + direction_count) * texels.map.used.len() as u64;
-        graph.pass("diffuse/lightmaps/aim/direct", pass).note("rays", rays).threads(texels.threads());
+        let rays = u64::from(quarters + sample_count + direction_count) * self.map.used.len() as u64;
+        graph.pass(name, pass).note("rays", rays).threads([self.map.count, 1, 1]);
+    }
+}
+
+impl Approximated {
+    /// Declares the pass that finds what comes of the lights.
+    pub(super) fn declare(
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        texels: &LightTexels,
+        options: &LightmapsOptions,
+    ) -> Approximated {
+        let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count());
+        let lit = Lit { map: &texels.map, rays: &texels.rays, group: &texels.group };
+        lit.declare(graph, scene, direct, options, "diffuse/lightmaps/aim/direct");
         let bounces =
             options.bounces.map_or_else(|| bounces_for(scene.greatest_albedo()), |bounces| bounces.max(1) - 1);
         Approximated { direct, bounces, sky: scene.sky }

@@ -6,8 +6,11 @@
 //! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), all of them, or as many a frame as the options say
 //!    (`renewal.rs`).
 //! 4. Pixels interpolate the IIM (`shade.rs`). That alone follows the camera.
+//!
+//! Whoever takes the light off the device gets it on finer texels (`detail.rs`).
 
 mod aim;
+mod detail;
 mod formats;
 mod iim;
 pub(crate) mod options;
@@ -19,6 +22,7 @@ mod tests;
 mod texels;
 
 use self::aim::Approximated;
+use self::detail::in_detail;
 use self::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
 use self::texels::LightTexels;
@@ -75,14 +79,19 @@ impl Method for Lightmaps {
         let light = Approximated::declare(cx.graph, scene, &texels, options);
         let shown = match options.settle {
             LightmapsSettle::Always => {
-                let aim = match options.source {
+                let (aim, caustics) = match options.source {
                     LightmapsSource::Rays => {
                         let caustics = photons::caustics(cx.graph, scene, &texels, options, None);
-                        light.settled(cx.graph, &texels, caustics)
+                        (light.settled(cx.graph, &texels, caustics), caustics)
                     }
-                    LightmapsSource::Photons => photons::aim(cx.graph, scene, &texels, options, None),
+                    LightmapsSource::Photons => (photons::aim(cx.graph, scene, &texels, options, None), None),
                 };
-                iim::all(cx.graph, &texels, aim, options)
+                let diffuse = iim::all(cx.graph, &texels, aim, options);
+                if let Some(detail) = cx.frame.stored_light {
+                    let light = (diffuse, caustics);
+                    cx.frame.offers.put(in_detail(cx.graph, scene, &texels, light, (options, detail)));
+                }
+                diffuse
             }
             LightmapsSettle::First | LightmapsSettle::Never => {
                 renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)

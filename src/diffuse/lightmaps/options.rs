@@ -7,9 +7,11 @@ choices! {
     LightmapsSettle {
         /// In frames without a past: a picture by itself shows the settled maps.
         First = "first",
-        /// In every frame in which something changed.
+        /// In every frame in which something changed; `true` is the same.
+        #[serde(alias = "true")]
         Always = "always",
-        /// Never: the paper.
+        /// Never: the paper; `false` is the same.
+        #[serde(alias = "false")]
         Never = "never",
     }
 }
@@ -57,7 +59,7 @@ options! {
     samples: u32 = 32, draft = 16, high = 128; OptionKind::Integer(1, 1024), "rays", "linear";
     /// Scatterings before the surface that the picture shows. None: until next to nothing of the flux is left.
     bounces: Option<u32> = None; OptionKind::Limit(0, 64), "scatterings", "linear";
-    /// When all texels are renewed in one frame.
+    /// When all texels are renewed in one frame; `true` is always, `false` never.
     settle: LightmapsSettle = LightmapsSettle::First, paper = LightmapsSettle::Never; OptionKind::Choice(LightmapsSettle::NAMES), "", "";
     /// Texels that a frame renews at most, those first whose light changed most.
     texels: u32 = 512, draft = 256, high = 2048, paper = 20; OptionKind::Integer(1, 1_000_000), "texels", "linear";

@@ -6,7 +6,7 @@ use super::formats::{WORD, WORDS4};
 use super::options::LightmapsOptions;
 use crate::frame::rays::{Lightmap, Texels, TracedScene};
 use crate::graph::Graph;
-use crate::graph::bindings::BufferRef;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::shaders::groups::{Lightmap as LightmapGroup, Lobes, SceneRays};
 use crate::shaders::lightmaps::{Cuts, CutsPush, Links, LinksPush, Place, PlacePush, Probe, ProbePush};
 
@@ -43,8 +43,7 @@ impl LightTexels {
         scene: &TracedScene,
         options: &LightmapsOptions,
     ) -> Option<LightTexels> {
-        let most = most_texels(options.links);
-        let map = scene.lightmap(Texels { size: options.texel, count: options.count, most });
+        let map = scene.lightmap(texels_asked(options));
         let texel_count = map.count;
         if map.used.is_empty() {
             graph.skip("diffuse/lightmaps", "no surface that light falls on");
@@ -52,31 +51,7 @@ impl LightTexels {
         }
         let (threads, count) = ([texel_count, 1, 1], texel_count as usize);
         let rays = scene.rays(graph);
-        let charts = map.charts(graph);
-        let placed = graph.buffer::<[u32; 4]>("lightmaps.texels", 2 * count);
-        let pass = Place {
-            scene_rays: rays.clone(),
-            places: map.places(graph),
-            charts: charts.clone(),
-            texels_out: placed.write(),
-            push: PlacePush { texel_count },
-        };
-        let pass = graph.pass("diffuse/lightmaps/texels/place", pass).note("surfaces", u64::from(map.surface_count));
-        pass.note("texels", map.used.len() as u64).threads(threads);
-
-        let valid = graph.buffer::<u32>("lightmaps.valid", count);
-        let mut group = LightmapGroup {
-            lightmap_charts: charts,
-            lightmap_texels: placed.texels(WORDS4),
-            lightmap_flags: valid.texels(WORD),
-        };
-        let pass = Probe {
-            scene_rays: rays.clone(),
-            lightmap: group.clone(),
-            valid: valid.write(),
-            push: ProbePush { texel_count },
-        };
-        graph.pass("diffuse/lightmaps/texels/probe", pass).threads(threads);
+        let (mut group, valid, _) = placed(graph, &rays, &map, ["lightmaps", "diffuse/lightmaps/texels"]);
         let flags = graph.buffer::<u32>("lightmaps.flags", count);
         let counts = graph.buffer::<u32>("lightmaps.cut_counts", 2);
         graph.fill_buffer("diffuse/lightmaps/texels/clear", counts, 0);
@@ -129,4 +104,45 @@ impl LightTexels {
     pub(super) fn threads(&self) -> [u32; 3] {
         [self.map.count, 1, 1]
     }
+}
+
+/// How finely the options cut.
+pub(super) fn texels_asked(options: &LightmapsOptions) -> Texels {
+    Texels { size: options.texel, count: options.count, most: most_texels(options.links) }
+}
+
+/// Places texels, and finds those within geometry: the group that says where they are and which lie in the open, the latter by itself, and on which
+/// triangles they are. Names: of buffers, of passes.
+pub(super) fn placed(
+    graph: &mut Graph<'_>,
+    rays: &SceneRays,
+    map: &Lightmap,
+    [buffers, passes]: [&str; 2],
+) -> (LightmapGroup, BufferRef<u32>, TexelBuffer) {
+    let (texel_count, count) = (map.count, map.count as usize);
+    let (charts, places) = (map.charts(graph), map.places(graph));
+    let placed = graph.buffer::<[u32; 4]>(&format!("{buffers}.texels"), 2 * count);
+    let pass = Place {
+        scene_rays: rays.clone(),
+        places: places.clone(),
+        charts: charts.clone(),
+        texels_out: placed.write(),
+        push: PlacePush { texel_count },
+    };
+    let pass = graph.pass(&format!("{passes}/place"), pass).note("surfaces", u64::from(map.surface_count));
+    pass.note("texels", map.used.len() as u64).threads([texel_count, 1, 1]);
+    let valid = graph.buffer::<u32>(&format!("{buffers}.valid"), count);
+    let group = LightmapGroup {
+        lightmap_charts: charts,
+        lightmap_texels: placed.texels(WORDS4),
+        lightmap_flags: valid.texels(WORD),
+    };
+    let pass = Probe {
+        scene_rays: rays.clone(),
+        lightmap: group.clone(),
+        valid: valid.write(),
+        push: ProbePush { texel_count },
+    };
+    graph.pass(&format!("{passes}/probe"), pass).threads([texel_count, 1, 1]);
+    (group, valid, places)
 }

@@ -20,7 +20,7 @@ mod traced_scene;
 mod triangles;
 mod uploaded;
 
-pub(crate) use self::lightmap::{Lightmap, Texels};
+pub(crate) use self::lightmap::{Lightmap, Texels, TriangleChart};
 pub(crate) use self::motion::Motion;
 pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;

@@ -180,6 +180,12 @@ impl Surfaces {
         }
     }
 
+    /// As [`Surfaces::lightmap`], with texels of the `detail`-th part of the size; it is not kept.
+    pub(super) fn finer_lightmap(&self, finer: (Texels, u32), sides: &[u32]) -> Lightmap {
+        let taking = Taking { sides, backs: self.backs(), areas: &self.areas };
+        Lightmap::finer(&self.triangles, &self.parts, &taking, finer)
+    }
+
     /// So many points, in clusters; `sides`: of each material, those that take diffuse light. The last ones stand.
     pub(super) fn samples(&self, wanted: (u32, u32), sides: &[u32]) -> Arc<SurfaceSamples> {
         let mut held = self.samples.lock().unwrap_or_else(PoisonError::into_inner);

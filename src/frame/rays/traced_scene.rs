@@ -215,6 +215,11 @@ impl TracedScene {
         self.surfaces.lightmap(texels, &self.looks.diffuse_sides)
     }
 
+    /// The same surfaces with texels of the `detail`-th part of the size.
+    pub(crate) fn finer_lightmap(&self, texels: Texels, detail: u32) -> Arc<Lightmap> {
+        Arc::new(self.surfaces.finer_lightmap((texels, detail), &self.looks.diffuse_sides))
+    }
+
     /// So many points spread evenly over all diffuse surface, in clusters of so many neighbours.
     pub(crate) fn surface_samples(&self, count: u32, cluster: u32) -> Arc<SurfaceSamples> {
         self.surfaces.samples((count, cluster), &self.looks.diffuse_sides)

@@ -24,7 +24,7 @@ const ROOMS: &[(u32, &[&str])] = &[
     (7, &["method"]),
     (8, &["direct", "diffuse", "caustics", "specular", "estimator"]),
     (9, &["renderer"]),
-    (10, &["reference"]),
+    (10, &["reference", "bake"]),
     (11, &["bench"]),
     (12, &["cli", "capi", "stress"]),
 ];

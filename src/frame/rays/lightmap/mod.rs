@@ -44,6 +44,19 @@ pub(crate) struct Lightmap {
     areas: Vec<f32>,
     /// Names all of it.
     pub(crate) key: u64,
+    /// How the names of its lists begin.
+    lists: &'static str,
+}
+
+/// Where a triangle lies on its surface's map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TriangleChart {
+    /// Of its corners, counter-clockwise as seen from its front, in texels: these lie on whole numbers, borders included.
+    pub(crate) corners: [[f32; 2]; 3],
+    /// The first texels of the front's and of the back's map, for sides that have one; row by row.
+    pub(crate) firsts: [Option<u32>; 2],
+    pub(crate) size: [u32; 2],
+    pub(crate) surface: u32,
 }
 
 /// How finely a light map is cut.
@@ -115,10 +128,31 @@ fn sizes(charts: &[Chart], triangles: &[TracedTriangle], texels: Texels) -> Vec<
 
 impl Lightmap {
     pub(super) fn new(triangles: &[TracedTriangle], parts: &[Part], taking: &Taking<'_>, texels: Texels) -> Lightmap {
+        Lightmap::made(triangles, parts, taking, (texels, 1), "traced.lightmap")
+    }
+
+    /// The same surfaces, numbered alike, with texels of the `detail`-th part of the size.
+    pub(super) fn finer(
+        triangles: &[TracedTriangle],
+        parts: &[Part],
+        taking: &Taking<'_>,
+        finer: (Texels, u32),
+    ) -> Lightmap {
+        Lightmap::made(triangles, parts, taking, finer, "traced.finer_lightmap")
+    }
+
+    fn made(
+        triangles: &[TracedTriangle],
+        parts: &[Part],
+        taking: &Taking<'_>,
+        (texels, detail): (Texels, u32),
+        lists: &'static str,
+    ) -> Lightmap {
         let sides = |number: usize| taking.sides(triangles, number);
         let charts: Vec<Chart> =
             parts.par_iter().flat_map_iter(|part| charts(triangles, part.triangles(), sides)).collect();
-        let texels = sizes(&charts, triangles, texels);
+        let texels: Vec<f64> =
+            sizes(&charts, triangles, texels).into_iter().map(|size| size / f64::from(detail.max(1))).collect();
         let lattices: Vec<Lattice> =
             charts.iter().zip(&texels).map(|(chart, texel)| Lattice::of(chart, *texel)).collect();
         let areas: Vec<Vec<f32>> =
@@ -163,30 +197,46 @@ impl Lightmap {
             used,
             areas: texel_areas,
             key: hash_of(&("lightmap", &records, &places)),
+            lists,
             records,
             places,
         }
     }
 
+    /// Where a triangle lies; `None` if neither of its sides has texels.
+    pub(crate) fn chart(&self, triangle: usize) -> Option<TriangleChart> {
+        let bytes = self.records.get(triangle * size_of::<[u32; 12]>()..)?.get(..size_of::<[u32; 12]>())?;
+        let [ax, ay, bx, by, cx, cy, front, back, width, height, _, surface]: [u32; 12] =
+            bytemuck::pod_read_unaligned(bytes);
+        let firsts = [front, back].map(|first| Some(first).filter(|&first| first != NONE));
+        let corners = [[ax, ay], [bx, by], [cx, cy]].map(|corner| corner.map(f32::from_bits));
+        let chart = TriangleChart { corners, firsts, size: [width, height], surface };
+        firsts.iter().any(Option::is_some).then_some(chart)
+    }
+
     /// Of each triangle where its corners lie on the map.
     pub(crate) fn charts(&self, graph: &mut Graph<'_>) -> TexelBuffer {
         let records = self.records.clone();
-        graph.upload_shared::<u32>("traced.lightmap_charts", records, self.key, Dependence::GEOMETRY).texels(WORDS)
+        graph
+            .upload_shared::<u32>(&format!("{}_charts", self.lists), records, self.key, Dependence::GEOMETRY)
+            .texels(WORDS)
     }
 
     /// Of each texel its triangle and where on it it lies.
     pub(crate) fn places(&self, graph: &mut Graph<'_>) -> TexelBuffer {
         let places = self.places.clone();
-        graph.upload_shared::<u32>("traced.lightmap_places", places, self.key, Dependence::GEOMETRY).texels(WORDS)
+        graph
+            .upload_shared::<u32>(&format!("{}_places", self.lists), places, self.key, Dependence::GEOMETRY)
+            .texels(WORDS)
     }
 
     /// How much of its surface is nearest to each texel, m².
     pub(crate) fn areas(&self, graph: &mut Graph<'_>) -> TexelBuffer {
-        graph.upload("traced.lightmap_areas", &self.areas, Dependence::GEOMETRY).texels(FLOAT)
+        graph.upload(&format!("{}_areas", self.lists), &self.areas, Dependence::GEOMETRY).texels(FLOAT)
     }
 
     /// The texels that are read.
     pub(crate) fn used(&self, graph: &mut Graph<'_>) -> BufferRef<u32> {
-        graph.upload("traced.lightmap_used", &self.used, Dependence::GEOMETRY)
+        graph.upload(&format!("{}_used", self.lists), &self.used, Dependence::GEOMETRY)
     }
 }
