@@ -10,6 +10,7 @@
 mod aim;
 mod formats;
 mod iim;
+mod maps;
 pub(crate) mod options;
 mod photons;
 mod renewal;
@@ -19,6 +20,7 @@ mod tests;
 mod texels;
 
 use self::aim::Approximated;
+use self::maps::Maps;
 use self::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
 use self::texels::LightTexels;
@@ -73,7 +75,7 @@ impl Method for Lightmaps {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let Some(texels) = LightTexels::declare(cx.graph, scene, options) else { return Ok(None) };
         let light = Approximated::declare(cx.graph, scene, &texels, options);
-        let shown = match options.settle {
+        let maps = match options.settle {
             LightmapsSettle::Always => {
                 let aim = match options.source {
                     LightmapsSource::Rays => {
@@ -82,12 +84,12 @@ impl Method for Lightmaps {
                     }
                     LightmapsSource::Photons => photons::aim(cx.graph, scene, &texels, options, None),
                 };
-                iim::all(cx.graph, &texels, aim, options)
+                Maps { gathered: iim::all(cx.graph, &texels, aim, options), received: Some(aim) }
             }
             LightmapsSettle::First | LightmapsSettle::Never => {
                 renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)
             }
         };
-        Ok(Some(shade::shade(cx, scene, &texels, shown)))
+        Ok(Some(shade::shade(cx, scene, &texels, &maps, options.show)))
     }
 }
