@@ -14,8 +14,11 @@
 
 layout(local_size_x = 64) in;
 
+// 1: maps by themselves, as on white surfaces.
+layout(constant_id = 0) const uint WHITE = 0u;
+
 layout(set = 0, binding = 0, rgba32f) writeonly uniform image2D diffuse;
-layout(set = 0, binding = 1) uniform samplerBuffer gathered;   // the IIM
+layout(set = 0, binding = 1) uniform samplerBuffer map;   // the IIM, or, to look at, the AIM
 
 layout(push_constant, scalar) uniform Push { vec3 shift; } push;   // from the G-buffer's render space to that of rays
 
@@ -35,8 +38,8 @@ void main() {
         if (max3(albedo) > 0.0) {
             vec3 irradiance = seen_irradiance(
                 position_rs + push.shift, point.geometric_normal, direction_to_eye(camera, position_rs),
-                viewer_distance(camera, position_rs), gathered);
-            radiance = albedo * INVERSE_PI * irradiance;
+                viewer_distance(camera, position_rs), map);
+            radiance = (WHITE != 0u ? vec3(1.0) : albedo) * INVERSE_PI * irradiance;
         }
     }
     imageStore(diffuse, pixel, vec4(radiance, 1.0));

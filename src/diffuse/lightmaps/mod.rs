@@ -13,6 +13,7 @@ mod aim;
 mod detail;
 mod formats;
 mod iim;
+mod maps;
 pub(crate) mod options;
 mod photons;
 mod renewal;
@@ -23,6 +24,7 @@ mod texels;
 
 use self::aim::Approximated;
 use self::detail::in_detail;
+use self::maps::Maps;
 use self::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
 use self::texels::LightTexels;
@@ -77,7 +79,7 @@ impl Method for Lightmaps {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let Some(texels) = LightTexels::declare(cx.graph, scene, options) else { return Ok(None) };
         let light = Approximated::declare(cx.graph, scene, &texels, options);
-        let shown = match options.settle {
+        let maps = match options.settle {
             LightmapsSettle::Always => {
                 let (aim, caustics) = match options.source {
                     LightmapsSource::Rays => {
@@ -91,12 +93,12 @@ impl Method for Lightmaps {
                     let light = (diffuse, caustics);
                     cx.frame.offers.put(in_detail(cx.graph, scene, &texels, light, (options, detail)));
                 }
-                diffuse
+                Maps { gathered: diffuse, received: Some(aim) }
             }
             LightmapsSettle::First | LightmapsSettle::Never => {
                 renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)
             }
         };
-        Ok(Some(shade::shade(cx, scene, &texels, shown)))
+        Ok(Some(shade::shade(cx, scene, &texels, &maps, options.show)))
     }
 }

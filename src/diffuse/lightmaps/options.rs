@@ -36,6 +36,18 @@ choices! {
     }
 }
 
+choices! {
+    /// What the slot shows: its light, or maps by themselves, to look at.
+    LightmapsShow {
+        /// Diffuse light.
+        Light = "light",
+        /// The indirect illumination map, as on white surfaces: its irradiance over π.
+        Gathered = "gathered",
+        /// The approximated illumination map, likewise.
+        Received = "received",
+    }
+}
+
 options! {
     /// Options of the `lightmaps` diffuse method (Larsen & Christensen 2004).
     LightmapsOptions, "lightmaps":
@@ -65,4 +77,6 @@ options! {
     texels: u32 = 512, draft = 256, high = 2048, paper = 20; OptionKind::Integer(1, 1_000_000), "texels", "linear";
     /// Share of what is left to a texel's new light that a frame goes; 1: at once.
     blend: f64 = 0.5; OptionKind::Number(0.01, 1.0), "", "";
+    /// What the slot shows: its light, or one of the two maps on white surfaces, to look at.
+    show: LightmapsShow = LightmapsShow::Light; OptionKind::Choice(LightmapsShow::NAMES), "", "";
 }

@@ -4,7 +4,8 @@
 use super::aim::Approximated;
 use super::formats::{FLOATS4, WORD, WORDS2};
 use super::iim::{Chosen, gather};
-use super::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
+use super::maps::Maps;
+use super::options::{LightmapsOptions, LightmapsSettle, LightmapsShow, LightmapsSource};
 use super::photons;
 use super::texels::LightTexels;
 use crate::frame::rays::TracedScene;
@@ -40,16 +41,18 @@ impl Kept {
     }
 }
 
-/// Declares what a frame does for the maps of the scene of that identity; returns what they show.
+/// Declares what a frame does for the maps of the scene of that identity.
 pub(super) fn renewed(
     graph: &mut Graph<'_>,
     (scene, identity): (&TracedScene, u64),
     texels: &LightTexels,
     light: &Approximated,
     options: &LightmapsOptions,
-) -> BufferRef<[f32; 4]> {
-    let &LightmapsOptions { rays, samples, bounces, source, photons, nearest, .. } = options;
-    let depends = hash_of(&(identity, texels.map.key, rays, texels.link_count, samples, bounces, source));
+) -> Maps {
+    let &LightmapsOptions { rays, samples, bounces, source, photons, nearest, show, .. } = options;
+    // Frames that show the AIM alone leave the other map behind.
+    let aim_alone = show == LightmapsShow::Received;
+    let depends = hash_of(&(aim_alone, identity, texels.map.key, rays, texels.link_count, samples, bounces, source));
     let content = hash_of(&(depends, scene.key, scene.sky.map(f32::to_bits), photons, nearest));
     let among = photons::SentAmong::declare(graph);
     let kept = Kept::declare(graph, texels.count(), depends);
@@ -58,9 +61,9 @@ pub(super) fn renewed(
     let (whole, wholes) = graph.state_buffer::<u32>("lightmaps.whole", 1, content, Advance::EveryFrame);
     let used_count = texels.map.used.len() as u32;
     let renewing = used_count.div_ceil(options.texels).max(photons::probing_frames(options));
-    if wholes > 0 || frames >= renewing.saturating_add(LAST_FRAMES) {
+    if !aim_alone && (wholes > 0 || frames >= renewing.saturating_add(LAST_FRAMES)) {
         graph.skip("diffuse/lightmaps/renewal", "all texels are renewed");
-        return kept.shown;
+        return Maps { gathered: kept.shown, received: None };
     }
     let at_once = kept.age == 0 && options.settle == LightmapsSettle::First;
     let aim = match options.source {
@@ -99,7 +102,7 @@ pub(super) fn renewed(
         graph.fill_buffer("diffuse/lightmaps/renewal/whole", whole, word);
         graph.want_buffer(whole);
     }
-    kept.shown
+    Maps { gathered: kept.shown, received: Some(aim) }
 }
 
 /// The AIM: all bounces, or a few more than in the frame before.

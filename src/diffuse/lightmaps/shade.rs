@@ -3,10 +3,12 @@
 use ash::vk;
 
 use super::formats::FLOATS4;
+use super::maps::Maps;
+use super::options::LightmapsShow;
 use super::texels::LightTexels;
 use crate::frame::mirrored::{MirroredLight, MirroredPoints};
 use crate::frame::rays::TracedScene;
-use crate::graph::bindings::{BufferRef, ImageRef};
+use crate::graph::bindings::ImageRef;
 use crate::method::FrameCx;
 use crate::shaders::lightmaps::{Mirrored, Pixels, PixelsPush};
 
@@ -15,16 +17,19 @@ pub(super) fn shade(
     cx: &mut FrameCx<'_, '_>,
     scene: &TracedScene,
     texels: &LightTexels,
-    shown: BufferRef<[f32; 4]>,
+    maps: &Maps,
+    show: LightmapsShow,
 ) -> ImageRef {
+    let seen = maps.received.filter(|_| show == LightmapsShow::Received).unwrap_or(maps.gathered);
     let (frame, surface) = (cx.frame, cx.frame.surface);
     let graph = &mut *cx.graph;
     let diffuse = graph.image("lightmaps.diffuse", vk::Format::R32G32B32A32_SFLOAT, surface.size);
     let pass = Pixels {
+        white: u32::from(show != LightmapsShow::Light),
         scene_rays: texels.rays.clone(),
         surface: surface.group.clone(),
         lightmap: texels.group.clone(),
-        gathered: shown.texels(FLOATS4),
+        map: seen.texels(FLOATS4),
         diffuse: diffuse.write(),
         push: PixelsPush { shift: (frame.data.origin - scene.origin).as_vec3().to_array() },
     };
@@ -37,7 +42,7 @@ pub(super) fn shade(
                 scene_rays: texels.rays.clone(),
                 mirrored: list.group(),
                 lightmap: texels.group.clone(),
-                gathered: shown.texels(FLOATS4),
+                gathered: maps.gathered.texels(FLOATS4),
                 received: received.start(),
             };
             let pass = graph.pass(&format!("diffuse/lightmaps/shade/mirrored.{number}"), pass);

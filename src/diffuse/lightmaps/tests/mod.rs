@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 
 use self::frames::asked;
 use super::Lightmaps;
-use super::options::{LightmapsOptions, LightmapsSettle};
+use super::options::{LightmapsOptions, LightmapsSettle, LightmapsShow};
 use crate::gpu_tests::against_paths::{against_paths, leaks};
 use crate::gpu_tests::scenes::{
     add_light, box_faces, closed_box, lambert, lamp_box, open_room, place, quad, request, sunlit_corner, view,
@@ -71,6 +71,22 @@ fn a_furnace_is_even() {
     let farthest = values().map(|value| (value - 0.5).abs()).fold(0.0, f64::max);
     println!("mean {mean:.4}, farthest {farthest:.4}");
     assert!((mean - 0.5).abs() < 0.003 && farthest < 0.02, "{mean} {farthest}");
+}
+
+/// The same furnace, of albedo ½ and radiance 2, half of which is emitted: all of it arrives at texels, E/π = 2; what rays gather is what was scattered, E/π = 1.
+#[test]
+fn maps_can_be_looked_at() {
+    let session = Session::open();
+    let (scene, camera) = with_camera("furnace");
+    for (show, expected) in [(LightmapsShow::Gathered, 1.0), (LightmapsShow::Received, 2.0)] {
+        let mut renderer = session.renderer(&settings(LightmapsOptions { show, ..options() }));
+        for number in 0..3 {
+            let frame = frames::frame(&mut renderer, &scene, &camera);
+            let pixels = frame.slots[&Slot::Diffuse].pixels.as_flattened();
+            let mean = pixels.iter().map(|&value| f64::from(value)).sum::<f64>() / pixels.len() as f64;
+            assert!((mean - expected).abs() < 0.01 * expected, "{show:?}, frame {number}: {mean}");
+        }
+    }
 }
 
 /// Every kind of light, few bounces and all.
