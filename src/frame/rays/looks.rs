@@ -76,11 +76,34 @@ fn diffuse_sides(material: &Material) -> u32 {
     }
 }
 
-/// What a material with a diffuse lobe reflects of light, in the brightest channel, without its textures; its specular layer reflects what it keeps from that lobe.
+/// The most that a material with a diffuse lobe reflects of light anywhere, in the brightest channel: textures may be white, and leave metal or glass out. Its specular
+/// layer reflects what it keeps from that lobe.
 fn reflected(material: &Material) -> f64 {
     let [red, green, blue, _] = material.base_color;
-    let lobe = (1.0 - material.metallic) * (1.0 - material.transmission) * if material.unlit { 0.0 } else { 1.0 };
+    let least = |factor: f32, textured: bool| if textured { 0.0 } else { factor };
+    let metallic = least(material.metallic, material.metallic_roughness_texture.is_some());
+    let transmission = least(material.transmission, material.transmission_texture.is_some());
+    let lobe = (1.0 - metallic) * (1.0 - transmission) * if material.unlit { 0.0 } else { 1.0 };
     let diffuse = f64::from(red.max(green).max(blue) * lobe).clamp(0.0, 1.0);
     let layer = if has_specular_lobe(material) { MEAN_FRESNEL } else { 0.0 };
     if diffuse > 0.0 { diffuse + layer * (1.0 - diffuse) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::TextureId;
+
+    /// glTF's factors are 1 by default where textures decide.
+    #[test]
+    fn textures_may_leave_metal_and_glass_out() {
+        let texture = Some(TextureRef::new(TextureId(0)));
+        let metal = Material { metallic: 1.0, ..Material::default() };
+        let glass = Material { transmission: 1.0, double_sided: true, ..Material::default() };
+        assert_eq!([&metal, &glass].map(diffuse_sides), [0, 0]);
+        let metal = Material { metallic_roughness_texture: texture, ..metal };
+        let glass = Material { transmission_texture: texture, ..glass };
+        assert_eq!([&metal, &glass].map(diffuse_sides), [1, 2]);
+        assert!(reflected(&metal) > 0.99 && diffuse_sides(&Material { unlit: true, ..metal }) == 0);
+    }
 }
