@@ -158,7 +158,7 @@ impl Shared {
             traced,
             offers: Offers::default(),
             mirrored_lamps: settings.methods.shows_lamps(),
-            follows_reflections: settings.follows_reflections(),
+            follows_lamps: settings.follows_lamps(),
         }
     }
 }

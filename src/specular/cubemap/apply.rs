@@ -1,0 +1,56 @@
+//! What every pixel reflects, from the map of its object.
+
+use ash::vk;
+
+use super::maps::Map;
+use super::objects::{Object, records};
+use super::options::CubemapOptions;
+use crate::frame::lobe_albedos::lobe_albedos;
+use crate::frame::rays::TracedScene;
+use crate::graph::Dependence;
+use crate::graph::bindings::ImageRef;
+use crate::method::FrameCx;
+use crate::shaders::cubemap::{Apply, ApplyPush, Find, FindPush};
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const WORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
+
+/// Declares the passes; returns the slot.
+pub(super) fn apply(
+    cx: &mut FrameCx<'_, '_>,
+    scene: &TracedScene,
+    objects: &[Object],
+    maps: &[Map],
+    options: &CubemapOptions,
+) -> ImageRef {
+    let (frame, surface) = (cx.frame, cx.frame.surface);
+    let shift = (frame.data.origin - scene.origin).as_vec3();
+    let graph = &mut *cx.graph;
+    let owners = graph.image("cubemap.owners", vk::Format::R32_UINT, surface.size);
+    let records = graph.upload("cubemap.objects", &records(objects, shift), Dependence::GEOMETRY | Dependence::CAMERA);
+    let pass = Find {
+        scene_rays: scene.rays(graph),
+        surface: surface.group.clone(),
+        objects: records.texels(WORDS),
+        owners: owners.write(),
+        push: FindPush { shift: shift.to_array(), object_count: u32::try_from(objects.len()).unwrap_or(0) },
+    };
+    graph.pass("specular/cubemap/find", pass).pixels(surface.size);
+    let albedos = graph.upload("cubemap.albedos", lobe_albedos(), Dependence::NONE);
+    let specular = graph.image("cubemap.specular", FLOATS, surface.size);
+    for (number, (object, map)) in (0..).zip(objects.iter().zip(maps)) {
+        let pass = Apply {
+            surface: surface.group.clone(),
+            is_first: u32::from(number == 0),
+            cube_side: options.resolution,
+            owners: owners.sampled(),
+            boxes: map.boxes.texels(FLOATS),
+            lobes: map.lobes.texels(FLOATS),
+            albedos: albedos.texels(FLOATS),
+            reflected: if number == 0 { specular.write() } else { specular.modify() },
+            push: ApplyPush { middle_rs: object.body.center_rs, owner: number + 1 },
+        };
+        graph.pass(&format!("specular/cubemap/apply.{number}"), pass).pixels(surface.size);
+    }
+    specular
+}
