@@ -12,18 +12,23 @@
 //
 // A and B are the lobe's directional albedo for Fresnel terms of 1 and 0, and 0 and 1; L_α the map around the object's middle c as a lobe of α shows it (prefilter.comp). p
 // is where the ray from x along the lobe's main direction leaves what the map shows: of its points x + t·r the first that lies behind the depth that the map holds
-// for its direction (distance impostors: Szirmay-Kalos et al. 2005). As seen from c the lobe has the width α' = α·|p − x|/|p − c|.
+// for its direction (distance impostors: Szirmay-Kalos et al. 2005). As seen from c the lobe has the width α' = α·|p − x|/|p − c|. What comes through glass is looked up
+// likewise, from where the line of sight leaves it.
 
 layout(local_size_x = 64) in;
 
 // 1: no earlier pass has written the image.
 layout(constant_id = 1) const uint IS_FIRST = 0u;
+// 1: some surface transmits.
+layout(constant_id = 2) const uint HAS_GLASS = 0u;
 
 layout(set = 0, binding = 0) uniform usampler2D owners;      // find.comp
 layout(set = 0, binding = 1) uniform samplerBuffer boxes;
 layout(set = 0, binding = 2) uniform samplerBuffer lobes;
 layout(set = 0, binding = 3) uniform samplerBuffer albedos;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image2D reflected;
+layout(set = 0, binding = 5) uniform usampler2D exits;       // through.comp
+layout(set = 0, binding = 6) uniform sampler2D transmitted;
 
 layout(push_constant, scalar) uniform Push {
     vec3 middle_rs;
@@ -108,6 +113,17 @@ vec3 reflected_light(Surface point) {
     return (point.f0 * albedo.x + point.f90 * albedo.y) * light_of_lobe(found.direction, clamp(alpha * found.ratio, 1e-6, 1.0));
 }
 
+// Through glass, as if its surfaces were smooth and their lobe that of the first one.
+vec3 transmitted_light(ivec2 pixel, float roughness) {
+    vec3 weight = HAS_GLASS != 0u ? texelFetch(transmitted, pixel, 0).rgb : vec3(0.0);
+    if (max3(weight) <= 0.0) {
+        return vec3(0.0);
+    }
+    uvec4 leaves = texelFetch(exits, pixel, 0);
+    Found found = surroundings(uintBitsToFloat(leaves.xyz) - push.middle_rs, unpack_direction(leaves.w));
+    return weight * light_of_lobe(found.direction, clamp(roughness * roughness * found.ratio, 1e-6, 1.0));
+}
+
 void main() {
     ivec2 pixel = pixel_of_invocation();
     ivec2 size = imageSize(reflected);
@@ -117,7 +133,7 @@ void main() {
     if (texelFetch(owners, pixel, 0).x == push.owner) {
         vec3 position_rs = position_of_pixel(camera, ndc_of_pixel(pixel, size), texelFetch(depth, pixel, 0).x);
         Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), texelFetch(specular, pixel, 0));
-        imageStore(reflected, pixel, vec4(reflected_light(point), 1.0));
+        imageStore(reflected, pixel, vec4(reflected_light(point) + transmitted_light(pixel, point.roughness), 1.0));
     } else if (IS_FIRST != 0u) {
         imageStore(reflected, pixel, vec4(0.0, 0.0, 0.0, 1.0));
     }

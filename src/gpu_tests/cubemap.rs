@@ -222,6 +222,27 @@ fn metal_spheres_are_those_of_paths() {
     }
 }
 
+/// But for what is reflected within it.
+#[test]
+fn glass_shows_what_lies_behind_it() {
+    let session = Session::open();
+    let glass = Material { transmission: 1.0, roughness: 0.0, thickness: 1.0, ..Material::default() };
+    let tinted = Material { thickness: 0.0, base_color: [0.9, 0.6, 0.3, 1.0], ..glass.clone() };
+    for (what, thick) in [("a ball", true), ("a pane", false)] {
+        let mut scene = walls(false);
+        if thick {
+            add_sphere(&mut scene, glass.clone(), 0.35, DVec3::new(0.2, -0.3, 0.2));
+        } else {
+            let id = scene.add_material(tinted.clone()).expect("sound");
+            let corners = [[-0.5, -0.8, 0.2], [0.6, -0.8, 0.2], [0.6, 0.3, 0.2], [-0.5, 0.3, 0.2]];
+            place(&mut scene, vec![quad(corners, id)], DAffine3::IDENTITY);
+        }
+        let (settings, camera) = (direct(&[]), in_the_room());
+        let truth = by_paths(&session, &scene, &settings, &camera, 64);
+        assert_close(what, &specular_of(&session, &scene, &settings, &camera), &truth, 0.06, 0.1);
+    }
+}
+
 /// A room whose walls are glossy is an object around its own map.
 #[test]
 fn a_glossy_room_mirrors_itself() {
