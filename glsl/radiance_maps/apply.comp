@@ -4,6 +4,7 @@
 #include "caches/asking.glsl"
 #include "caches/pixel_origin.glsl"
 #include "caches/weights.glsl"
+#include "lib/directional_albedo.glsl"
 #include "lib/pixels.glsl"
 #include "lib/surface_packing.glsl"
 #include "radiance_maps/horizon.glsl"
@@ -40,7 +41,6 @@ layout(push_constant, scalar) uniform Push {
     uint map_capacity;
 } push;
 
-const int ALBEDO_SIDE = 16;
 const float LEAST_SHARE = 1.0 / 256.0;
 
 struct Look {
@@ -49,17 +49,6 @@ struct Look {
     vec3 to_eye;
     vec3 mirrored;
 };
-
-// A and B by √(n·v) and roughness.
-vec2 directional_albedo(float cosine, float roughness) {
-    vec2 place = clamp(vec2(sqrt(cosine), roughness), 0.0, 1.0) * float(ALBEDO_SIDE - 1);
-    ivec2 low = min(ivec2(place), ivec2(ALBEDO_SIDE - 2));
-    vec2 along = place - vec2(low);
-    int first = MAP_TEXELS + low.y * ALBEDO_SIDE + low.x;
-    vec2 lower = mix(texelFetch(tables, first).xy, texelFetch(tables, first + 1).xy, along.x);
-    vec2 upper = mix(texelFetch(tables, first + ALBEDO_SIDE).xy, texelFetch(tables, first + ALBEDO_SIDE + 1).xy, along.x);
-    return mix(lower, upper, along.y);
-}
 
 // How much of a texel lies above the horizon: of a cap of its solid angle around its middle, at that height. Exact for whole spheres, and where the cap just touches.
 float share_above(float height, float solid_angle) {
@@ -151,7 +140,7 @@ vec3 reflected_light(Surface point) {
         float exponent = look.shares.exponent;
         return point.f0 * (cosine * (exponent + 8.0) / (8.0 * PI * (exponent + 1.0))) * light;
     }
-    vec2 albedo = directional_albedo(cosine, point.roughness);
+    vec2 albedo = directional_albedo(tables, MAP_TEXELS, cosine, point.roughness);
     return (point.f0 * albedo.x + point.f90 * albedo.y) * light;
 }
 

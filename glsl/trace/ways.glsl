@@ -12,7 +12,7 @@
 #include "lib/ray_offset.glsl"
 #include "lib/sobol.glsl"
 #include "lib/narrow.glsl"
-#include "trace/samples.glsl"
+#include "mirrored/samples.glsl"
 #include "trace/walking.glsl"
 
 // Events at which both reflection and refraction are followed.

@@ -43,8 +43,8 @@ pub(crate) struct FrameInputs<'f> {
     pub(crate) offers: Offers,
     /// Whether mirrors show lamps and the sky in the slot `direct`; else whoever follows reflections has to show them.
     pub(crate) mirrored_lamps: bool,
-    /// Whether somebody follows reflections.
-    pub(crate) follows_reflections: bool,
+    /// Whether somebody does so who follows reflections.
+    pub(crate) follows_lamps: bool,
 }
 
 impl FrameInputs<'_> {

@@ -174,8 +174,14 @@ fn what_is_said_to_be_written_whole_is() {
         settings.methods.set(Slot::Caustics, "points").expect("a method");
         (settings.points.photons, settings.points.frames) = (700, 3);
     });
+    let cubemap = Settings::new(Technique::Direct, Preset::Draft).with(|settings| {
+        settings.methods.set(Slot::Specular, "cubemap").expect("a method");
+        settings.cubemap.resolution = 32;
+    });
     let frames = [
         ("ring", points),
+        ("lights", cubemap.clone()),
+        ("cornell-glossy", cubemap),
         ("lights", supersampled),
         ("ring", hybrid(&[("photons.downscale", "2"), ("vpl.bounces", "2"), ("vpl.visibility", "traced")])),
         ("ring", hybrid(&[("photons.splat", "tiles"), ("vpl.visibility", "ism"), ("photons.trace", "march")])),

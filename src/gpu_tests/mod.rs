@@ -10,6 +10,7 @@ mod bvh;
 mod bvh_closed;
 mod bvh_speed;
 mod crash_markers;
+mod cubemap;
 mod direct;
 mod emitter_coverage;
 mod estimates;

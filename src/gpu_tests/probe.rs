@@ -17,7 +17,7 @@ use crate::renderer::declare::{Shared, inputs_of, wanted_methods};
 use crate::renderer::{DiffuseMethod, FrameRequest, Settings, Slot, SpecularMethod, Timing};
 use crate::scene::{Bounds, Scene};
 use crate::shaders::types;
-use crate::specular::radiance_maps;
+use crate::specular::{cubemap, radiance_maps};
 
 /// The scene and its lights as the device has them.
 pub(super) struct Probe {
@@ -35,6 +35,7 @@ pub(super) struct Declared {
     pub(super) volumes: Option<volumes::Made>,
     pub(super) vpl: Option<vpl::Made>,
     pub(super) maps: Option<radiance_maps::Made>,
+    pub(super) cubemaps: Option<cubemap::Made>,
     slots: Vec<(Slot, ImageRef)>,
 }
 
@@ -72,6 +73,7 @@ pub(super) fn probe(
         volumes: None,
         vpl: None,
         maps: None,
+        cubemaps: None,
         slots: Vec::new(),
     };
     for wanted in methods.iter().filter(|wanted| wanted.skipped.is_none()) {
@@ -88,6 +90,11 @@ pub(super) fn probe(
             }
             _ if wanted.method.slot == Slot::Specular && settings.methods.specular == SpecularMethod::RadianceMaps => {
                 Some(declared.maps.insert(radiance_maps::radiance_maps(cx, &settings.radiance_maps)).specular)
+            }
+            _ if wanted.method.slot == Slot::Specular && settings.methods.specular == SpecularMethod::Cubemap => {
+                (wanted.method.prepare)(cx, settings);
+                declared.cubemaps = cubemap::cubemap(cx, &settings.cubemap);
+                declared.cubemaps.as_ref().map(|made| made.specular)
             }
             _ => (wanted.method.declare)(cx, settings).expect("the device allows it"),
         };

@@ -77,7 +77,10 @@ fn a_resource_that_is_gone_is_made_again() {
     points.methods.set(Slot::Caustics, "points").expect("a method");
     let mut mirrors = small(Technique::Hybrid, &[]);
     mirrors.methods.set(Slot::Specular, "trace").expect("a method");
+    let mut cubemap = small(Technique::Direct, &[("cubemap.resolution", "32")]);
+    cubemap.methods.set(Slot::Specular, "cubemap").expect("a method");
     let all = [
+        ("cornell-glossy", cubemap),
         ("textured", small(Technique::Rsm, &[])),
         ("textured", small(Technique::Volumes, &[("volumes.lights", "16"), ("volumes.weights", "rays")])),
         ("textured", small(Technique::Volumes, &[("volumes.bounces", "3"), ("volumes.samples", "64")])),

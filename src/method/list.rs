@@ -23,6 +23,7 @@ macro_rules! for_all_methods {
                 points => Points(PointOptions),
             }
             specular {
+                cubemap => Cubemap(CubemapOptions),
                 radiance_maps => RadianceMaps(RadianceMapsOptions),
                 trace => Trace(TraceOptions),
             }

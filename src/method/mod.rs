@@ -31,6 +31,8 @@ pub(crate) trait Method {
     const LIGHTS_MIRRORED: bool = false;
     /// Of the slot `direct`: mirrors show lamps and the sky.
     const SHOWS_LAMPS: bool = false;
+    /// Of the slot `specular`: where the method of the slot `direct` does not, it shows lamps and the sky in mirrors.
+    const FOLLOWS_LAMPS: bool = false;
 
     /// Which light it can find: what it is compared with.
     fn light_paths(options: &Self::Options) -> LightPaths;

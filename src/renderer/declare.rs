@@ -166,7 +166,7 @@ impl Shared {
             stored_light: self.stored_light,
             offers: Offers::default(),
             mirrored_lamps: settings.methods.shows_lamps(),
-            follows_reflections: settings.follows_reflections(),
+            follows_lamps: settings.follows_lamps(),
         }
     }
 }

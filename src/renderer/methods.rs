@@ -34,6 +34,7 @@ pub(crate) struct MethodEntry {
     pub(crate) shaders: fn(&Settings, bool) -> Vec<&'static str>,
     pub(crate) lights_mirrored: bool,
     pub(crate) shows_lamps: bool,
+    pub(crate) follows_lamps: bool,
     pub(crate) prepare: fn(&mut FrameCx<'_, '_>, &Settings),
     pub(crate) declare: Declare,
     pub(crate) refine: Refine,
@@ -94,6 +95,7 @@ macro_rules! entries {
             shaders: |settings, software| <crate::$slot::$module::$method as Method>::shaders(&settings.$module, software),
             lights_mirrored: <crate::$slot::$module::$method as Method>::LIGHTS_MIRRORED,
             shows_lamps: <crate::$slot::$module::$method as Method>::SHOWS_LAMPS,
+            follows_lamps: <crate::$slot::$module::$method as Method>::FOLLOWS_LAMPS,
             prepare: |cx, settings| <crate::$slot::$module::$method as Method>::prepare(cx, &settings.$module),
             declare: |cx, settings| <crate::$slot::$module::$method as Method>::declare(cx, &settings.$module),
             refine: |cx, settings, slots| <crate::$slot::$module::$method as Method>::refine(cx, &settings.$module, slots),
@@ -176,9 +178,9 @@ impl Methods {
 }
 
 impl Settings {
-    /// Whether a method of the slot `specular` follows reflections.
-    pub(super) fn follows_reflections(&self) -> bool {
-        matches!(self.methods.filler(Slot::Specular), Some(Filler::Method(method)) if (method.inputs)(self).mirrored_light)
+    /// Whether a method of the slot `specular` shows lamps and the sky in mirrors, where that of the slot `direct` does not.
+    pub(super) fn follows_lamps(&self) -> bool {
+        matches!(self.methods.filler(Slot::Specular), Some(Filler::Method(method)) if method.follows_lamps)
     }
 
     /// Whether a method makes all slots better that methods fill.
@@ -306,6 +308,8 @@ mod tests {
         };
         assert_eq!(specular(&[]), (None, Some(8), true));
         assert_eq!(specular(&[("particles.bounces", "2"), ("trace.depth", "3")]), (Some(3), Some(3), true));
+        let cubemap = of(Technique::Lightmaps).light_paths(Slot::Specular);
+        assert_eq!((cubemap.bounces, cubemap.caustics, cubemap.mirrors), (None, CausticPaths::Unmirrored, Some(4)));
         // What mirrors show is lit directly alone where the method of the slot `diffuse` says nothing of it.
         let mut rsm = of(Technique::Rsm);
         rsm.methods.specular = of(Technique::Particles).methods.specular;

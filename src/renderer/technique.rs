@@ -64,8 +64,11 @@ techniques! {
     /// Light between area particles along links that were traced once (Chang, Park & Ihm), direct light by rays: geometry takes seconds, lights and
     /// camera move freely.
     Particles, "particles" { direct: DirectMethod::Traced, diffuse: DiffuseMethod::Particles, specular: SpecularMethod::Trace }
-    /// Light maps that are renewed where light changed, and caustic photons that are kept (Larsen & Christensen 2004). No specular light yet.
-    Lightmaps, "lightmaps" { diffuse: DiffuseMethod::Lightmaps, caustics: CausticsMethod::Points }
+    /// Light maps that are renewed where light changed, caustic photons that are kept, and maps of the surroundings of glossy objects (Larsen &
+    /// Christensen 2004).
+    Lightmaps, "lightmaps" {
+        diffuse: DiffuseMethod::Lightmaps, caustics: CausticsMethod::Points, specular: SpecularMethod::Cubemap
+    }
     /// Path tracing and light tracing: the reference, at as many samples as time allows.
     Path, "path" {
         direct: DirectMethod::Traced, diffuse: DiffuseMethod::Path, caustics: CausticsMethod::Path, specular: SpecularMethod::Path

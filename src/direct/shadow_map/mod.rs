@@ -46,11 +46,7 @@ impl Method for ShadowMap {
             push: ShadowMapPush {
                 light_count: lights.light_count,
                 normal_offset: options.normal_offset as f32,
-                diffuse_from: if cx.frame.follows_reflections {
-                    cx.frame.set.punctual_count
-                } else {
-                    lights.light_count
-                },
+                diffuse_from: if cx.frame.follows_lamps { cx.frame.set.punctual_count } else { lights.light_count },
                 filter_radius: i32::try_from(options.filter_radius).unwrap_or(0),
             },
         };

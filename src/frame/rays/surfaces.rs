@@ -140,6 +140,12 @@ impl Surfaces {
         })
     }
 
+    /// Of each instance of the scene, its triangles: the first, and the one after the last.
+    pub(crate) fn instance_triangles(&self) -> Vec<[u32; 2]> {
+        let number = |place: usize| u32::try_from(place).unwrap_or(u32::MAX);
+        self.parts.iter().map(|part| [number(part.triangles().start), number(part.triangles().end)]).collect()
+    }
+
     /// What moved since, if nothing else did that particles' places depend on.
     fn motion_to(
         &self,

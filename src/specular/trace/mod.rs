@@ -1,7 +1,7 @@
 //! `trace`: the slot `specular` by rays that follow reflections and refractions (Whitted 1980; the ray tracing stage of Chang, Park & Ihm, 4.3).
 //!
-//! 1. `walk.rs`, before other methods declare their passes: rays from the surfaces of the picture list the points that mirrors and glass show; `light.rs`: rays from
-//!    the points to the lights.
+//! 1. `walk.rs`, before other methods declare their passes: rays from the surfaces of the picture list the points that mirrors and glass show; `frame/mirrored_light.rs`:
+//!    rays from the points to the lights.
 //! 2. A method of the slot `diffuse` says what diffuse light comes to these, if it does so (`frame/mirrored.rs`).
 //! 3. `light.rs`: the sum at each pixel.
 //!
@@ -16,6 +16,7 @@ mod walk;
 
 use self::options::TraceOptions;
 use crate::frame::mirrored::{MirroredLight, MirroredPoints};
+use crate::frame::mirrored_light::Shining;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -28,6 +29,7 @@ impl Method for Trace {
     const NAME: &'static str = "trace";
     const SLOT: Slot = Slot::Specular;
     type Options = TraceOptions;
+    const FOLLOWS_LAMPS: bool = true;
 
     fn light_paths(options: &TraceOptions) -> LightPaths {
         LightPaths { bounces: None, caustics: CausticPaths::Unmirrored, mirrors: Some(options.depth) }
@@ -39,15 +41,7 @@ impl Method for Trace {
     }
 
     fn shaders(options: &TraceOptions, _: bool) -> Vec<&'static str> {
-        let mut shaders = vec![
-            "trace/glass",
-            "trace/walk",
-            "trace/arguments",
-            "trace/punctual",
-            "trace/emitters",
-            "trace/sky",
-            "trace/resolve",
-        ];
+        let mut shaders = vec!["trace/glass", "trace/walk", "trace/arguments", "mirrored/*", "trace/resolve"];
         if options.supersamples > 0 {
             shaders.extend(["trace/reflected", "trace/marks", "trace/supersample", "trace/replace"]);
         }
@@ -73,7 +67,7 @@ impl Method for Trace {
             None => cx.graph.skip("specular/trace/walk", "no specular surface"),
             Some(walked) => {
                 for (number, band) in walked.bands.iter().enumerate() {
-                    let shining = light::Shining::new(cx.graph, scene, band.list, ("light", number), false);
+                    let shining = Shining::new(cx.graph, scene, band.list, ("specular/trace/light", number), false);
                     let found = shining.find_punctual(cx.graph);
                     if let Some(images) = reflected {
                         images.sum(cx, walked, number, found.then_some(shining.light));

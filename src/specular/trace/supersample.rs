@@ -2,11 +2,11 @@
 
 use ash::vk;
 
-use super::light::Shining;
 use super::marks::{MarkedPixels, ReflectedImages, mark};
 use super::options::TraceOptions;
 use super::walk::{band_rows, count, walking};
 use crate::frame::mirrored::MirroredList;
+use crate::frame::mirrored_light::Shining;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::{BufferRef, ImageRef, TexelBuffer};
 use crate::method::FrameCx;
@@ -42,7 +42,7 @@ pub(super) fn sample(
     for (number, first_row) in (0..height).step_by(rows as usize).enumerate() {
         let marked = mark(cx, reflected, (number, first_row, rows.min(height - first_row)), options);
         let (sums, list) = follow(cx, scene, marked, number, options);
-        let shining = Shining::new(cx.graph, scene, list, ("supersample/light", number), true);
+        let shining = Shining::new(cx.graph, scene, list, ("specular/trace/supersample/light", number), true);
         let found = shining.find_punctual(cx.graph);
         shining.find_others(cx.graph, found, options.light_samples);
         bands.push(Samples { marked, sums, list, light: shining.light });

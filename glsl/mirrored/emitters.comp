@@ -2,18 +2,18 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_lights.glsl"
 #include "groups/scene_rays.glsl"
-#include "trace/points.glsl"
+#include "mirrored/points.glsl"
 #include "lib/emitter_hits.glsl"
 #include "lib/emitters.glsl"
 #include "lib/sobol.glsl"
 #include "lib/narrow.glsl"
-#include "trace/samples.glsl"
+#include "mirrored/samples.glsl"
 
 // What emissive surfaces send to one listed point, and it to its pixel, from points y drawn by power:
 //
 //   w/N Σ_k f(l_k, v) · (n·l_k)⁺ · L_e(y_k) · V / p_k        p = P(triangle) p(y) · d²/(n_y·−l)   [1/sr]
 //
-// f holds the diffuse lobe, and the specular one if it is wide: what narrow ones answer to, their rays find (walk.comp). At first surfaces of samples directions spread
+// f holds the diffuse lobe, and the specular one if it is wide: what narrow ones answer to, their rays find (trace/walk.comp). At first surfaces of samples directions spread
 // by the cosine look for the light of the diffuse lobe too, as many as points; each of the two is weighted by the power heuristic. Points alone are noisy where an
 // emitter is near.
 

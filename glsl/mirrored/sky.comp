@@ -1,12 +1,12 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
-#include "trace/points.glsl"
+#include "mirrored/points.glsl"
 #include "lib/sobol.glsl"
-#include "trace/samples.glsl"
+#include "mirrored/samples.glsl"
 
 // What the sky sends to the diffuse lobe of one listed point, and that to its pixel, by directions spread by the cosine; specular lobes send rays of their own
-// (walk.comp).
+// (trace/walk.comp).
 
 layout(local_size_x = 64) in;
 

@@ -1,6 +1,6 @@
 // One listed point an invocation, and the light that it sends to its pixel as far as earlier kernels have found it.
-#ifndef TRACE_POINTS
-#define TRACE_POINTS
+#ifndef MIRRORED_POINTS
+#define MIRRORED_POINTS
 
 #include "groups/mirrored.glsl"
 #include "lib/cutouts.glsl"

@@ -1,6 +1,6 @@
 // How many samples something takes.
-#ifndef TRACE_SAMPLES
-#define TRACE_SAMPLES
+#ifndef MIRRORED_SAMPLES
+#define MIRRORED_SAMPLES
 
 // `weight`: what it counts in the picture. What changes it little takes few.
 uint samples_for(uint most, float weight) {

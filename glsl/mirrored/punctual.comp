@@ -2,7 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_lights.glsl"
 #include "groups/scene_rays.glsl"
-#include "trace/points.glsl"
+#include "mirrored/points.glsl"
 #include "lib/punctual_light.glsl"
 
 // What punctual lights send to one listed point, and it to its pixel: w · Σ_i f(l_i, v) · E⊥_i · (n·l_i)⁺ · V_i, one ray a light.
