@@ -97,4 +97,17 @@ vec4 bilinear(samplerBuffer map, uint first, uint side, vec3 direction) {
     return sum;
 }
 
+// The greatest fourth component of the four texels around: what is nearest.
+float greatest_around(samplerBuffer map, uint side, vec3 direction) {
+    uint face = face_of(direction);
+    ivec2 low = ivec2(floor((place_on_face(face, direction) * 0.5 + 0.5) * float(side) - 0.5));
+    float greatest = 0.0;
+    for (int corner = 0; corner < 4; ++corner) {
+        ivec2 column_row = low + ivec2(corner & 1, corner >> 1);
+        vec3 middle = direction_of_face(face, (vec2(column_row) + 0.5) * (2.0 / float(side)) - 1.0);
+        greatest = max(greatest, texelFetch(map, int(nearest_texel(middle, side))).w * max3(abs(middle)));
+    }
+    return greatest;
+}
+
 #endif

@@ -2,6 +2,7 @@
 #include "lib/prelude.glsl"
 #include "groups/scene_rays.glsl"
 #include "groups/surface.glsl"
+#include "cubemap/objects.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
 #include "lib/pixels.glsl"
@@ -12,7 +13,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer objects;  // src/specular/cubemap/objects.rs
+layout(set = 0, binding = 0) uniform usamplerBuffer objects;
 layout(set = 0, binding = 1, r32ui) writeonly uniform uimage2D owners;  // 0: nothing specular; an object's number plus 1
 
 layout(push_constant, scalar) uniform Push {
@@ -22,17 +23,6 @@ layout(push_constant, scalar) uniform Push {
 
 // Of the distance to the camera: what the depth buffer's rounding may amount to, many times over.
 const float NEAR = 1.0 / 4096.0;
-const uint OBJECT_TEXELS = 5u;
-
-float distance_to_box(int first, vec3 position) {
-    vec3 away = position - uintBitsToFloat(texelFetch(objects, first).xyz);
-    vec3 outside;
-    for (int axis = 0; axis < 3; ++axis) {
-        vec4 side = uintBitsToFloat(texelFetch(objects, first + 1 + axis));
-        outside[axis] = max(abs(dot(away, side.xyz)) - side.w, 0.0);
-    }
-    return length(outside);
-}
 
 uint owner_of(vec3 position_rs, vec3 to_eye) {
     float away = camera.depth_range > 0.0 ? camera.depth_range : distance(camera.position_rs, position_rs);
@@ -47,7 +37,7 @@ uint owner_of(vec3 position_rs, vec3 to_eye) {
         if (hit.triangle != NO_TRIANGLE && hit.triangle >= first_triangle && hit.triangle < last.x) {
             return last.y + 1u;
         }
-        float to_box = distance_to_box(first, position);
+        float to_box = distance_to_box(objects, object, position - uintBitsToFloat(texelFetch(objects, first).xyz));
         if (to_box < least) {
             least = to_box;
             nearest = last.y + 1u;

@@ -8,7 +8,7 @@ use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, q
 use super::session::Session;
 use crate::frame::lobe_albedos::lobe_albedos;
 use crate::renderer::{FrameRequest, Settings, Slot, SpecularMethod, Technique, Timing};
-use crate::scene::{CameraView, Light, LightId, LightKind, Material, Scene};
+use crate::scene::{CameraView, Light, LightId, LightKind, Material, Primitive, Scene};
 use crate::slot::{LightPaths, PixelFilter};
 
 const SIZE: [u32; 2] = [64, 48];
@@ -248,7 +248,15 @@ fn glass_shows_what_lies_behind_it() {
 fn a_glossy_room_mirrors_itself() {
     let session = Session::open();
     let varnish = Material { roughness: 0.2, base_color: [0.5, 0.4, 0.3, 1.0], ..Material::default() };
-    let mut scene = closed_box(1.5, varnish);
+    let mut scene = Scene::empty("glossy room");
+    let walls = scene.add_material(varnish).expect("sound");
+    let mut room = Primitive { material: walls, ..Primitive::default() };
+    for face in box_faces([1.5; 3], [walls; 6]) {
+        let first = room.positions.len() as u32;
+        room.indices.extend(face.indices.iter().map(|index| first + index));
+        room.positions.extend(face.positions);
+    }
+    place(&mut scene, vec![room], DAffine3::IDENTITY);
     let id = scene.add_material(Material { emissive: [6.0, 5.0, 4.0], ..lambert([0.0; 3]) }).expect("sound");
     let corners = [[-0.5, 1.45, -0.4], [0.5, 1.45, -0.4], [0.5, 1.45, 0.4], [-0.5, 1.45, 0.4]];
     place(&mut scene, vec![quad(corners, id)], DAffine3::IDENTITY);
@@ -346,6 +354,26 @@ fn maps_stand_while_the_camera_moves() {
     let light = Light { intensity: [1.0, 2.0, 3.0], ..scene.lights()[0].clone() };
     scene.set_light(LightId(0), light).expect("sound");
     assert_eq!(ran(&scene, eye + 0.1), ["light/punctual.0", "resolve.0", "coarser.0", "prefilter.0", "apply.0"]);
+}
+
+/// What a block hides from the floor's middle, the map of the block shows: the floor beside it mirrors the green wall.
+#[test]
+fn other_maps_show_what_is_hidden_from_one() {
+    let session = Session::open();
+    let scene = builtin("cornell-glossy");
+    let camera = scene.camera_view(None).expect("a view");
+    let asked = FrameRequest { image: false, ..request([64, 64], camera, &[Slot::Specular]) };
+    let frame = session.render(&scene, &direct(&[]), &asked);
+    let part = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
+        let pixels = rows.flat_map(|row| columns.clone().map(move |column| 64 * row + column));
+        mean(
+            &pixels
+                .map(|pixel| DVec3::from(frame.slots[&Slot::Specular].pixels[pixel].map(f64::from)))
+                .collect::<Vec<_>>(),
+        )
+    };
+    let beside = part(53..57, 54..57);
+    assert!(beside.y > 1.3 * beside.x.max(beside.z), "{beside}");
 }
 
 /// A flat mirror, whose map lies in its plane.

@@ -28,7 +28,8 @@ pub(super) fn apply(
     let shift = (frame.data.origin - scene.origin).as_vec3();
     let graph = &mut *cx.graph;
     let owners = graph.image("cubemap.owners", vk::Format::R32_UINT, surface.size);
-    let records = graph.upload("cubemap.objects", &records(objects, shift), Dependence::GEOMETRY | Dependence::CAMERA);
+    let (listed, records) = records(objects, shift);
+    let records = graph.upload("cubemap.objects", &records, Dependence::GEOMETRY | Dependence::CAMERA);
     let pass = Find {
         scene_rays: scene.rays(graph),
         surface: surface.group.clone(),
@@ -56,11 +57,19 @@ pub(super) fn apply(
     }
     let albedos = graph.upload("cubemap.albedos", lobe_albedos(), Dependence::NONE);
     let specular = graph.image("cubemap.specular", FLOATS, surface.size);
-    for (number, (object, map)) in (0..).zip(objects.iter().zip(maps)) {
+    let unanswered = graph.image("cubemap.unanswered", vk::Format::R32_UINT, surface.size);
+    // Each object's own pixels first; then those of others that their own maps do not answer.
+    let others = if objects.len() > 1 { 2 } else { 1 };
+    for (takes_others, (number, (object, map))) in
+        (0..others).flat_map(|others| (0..).zip(objects.iter().zip(maps)).map(move |each| (others, each)))
+    {
+        let is_first = takes_others == 0 && number == 0;
+        let place = listed.iter().position(|&listed| listed == number as usize).unwrap_or(0);
         let pass = Apply {
             surface: surface.group.clone(),
-            is_first: u32::from(number == 0),
+            is_first: u32::from(is_first),
             has_glass: u32::from(glass.is_some()),
+            takes_others,
             cube_side: options.resolution,
             owners: owners.sampled(),
             boxes: map.boxes.texels(FLOATS),
@@ -68,10 +77,17 @@ pub(super) fn apply(
             albedos: albedos.texels(FLOATS),
             exits: SampledImage::of(glass.map(|(exits, _)| exits)),
             transmitted: SampledImage::of(glass.map(|(_, transmitted)| transmitted)),
-            reflected: if number == 0 { specular.write() } else { specular.modify() },
-            push: ApplyPush { middle_rs: object.body.center_rs, owner: number + 1 },
+            objects: records.texels(WORDS),
+            reflected: if is_first { specular.write() } else { specular.modify() },
+            unanswered: if is_first { unanswered.start_then_read() } else { unanswered.read_write() },
+            push: ApplyPush {
+                middle_rs: object.body.center_rs,
+                owner: number + 1,
+                object: u32::try_from(place).unwrap_or(0),
+            },
         };
-        graph.pass(&format!("specular/cubemap/apply.{number}"), pass).pixels(surface.size);
+        let name = if takes_others == 0 { "apply" } else { "apply-others" };
+        graph.pass(&format!("specular/cubemap/{name}.{number}"), pass).pixels(surface.size);
     }
     specular
 }

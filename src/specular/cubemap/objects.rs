@@ -60,7 +60,7 @@ fn share_of_screen(view_projection: &Mat4, body: &OrientedBox) -> f32 {
 }
 
 impl Object {
-    /// As glsl/cubemap/find.comp reads it: middle and first triangle; each side's direction and half its length; the end of its triangles and its number.
+    /// As glsl/cubemap/objects.glsl has it.
     pub(super) fn record(&self, number: u32, shift: Vec3) -> [[u32; 4]; 5] {
         let [x, y, z] = self.body.half_axes_rs.map(Vec3::from);
         let middle = Vec3::from(self.body.center_rs) + shift;
@@ -80,12 +80,13 @@ impl Object {
     }
 }
 
-/// The records of all, smaller ones first: of boxes that a point lies in, the first one counts.
-pub(super) fn records(objects: &[Object], shift: Vec3) -> Vec<[u32; 4]> {
+/// The records of all, smaller ones first: of boxes that a point lies in, the first one counts. Before them, the objects' numbers in that order.
+pub(super) fn records(objects: &[Object], shift: Vec3) -> (Vec<usize>, Vec<[u32; 4]>) {
     let mut order: Vec<usize> = (0..objects.len()).collect();
     order.sort_by(|&a, &b| objects[a].volume().total_cmp(&objects[b].volume()).then(a.cmp(&b)));
     let number = |place: usize| u32::try_from(place).unwrap_or(u32::MAX);
-    order.into_iter().flat_map(|place| objects[place].record(number(place), shift)).collect()
+    let records = order.iter().flat_map(|&place| objects[place].record(number(place), shift)).collect();
+    (order, records)
 }
 
 #[cfg(test)]
