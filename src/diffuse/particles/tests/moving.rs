@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::super::options::ParticlesOptions;
+use super::super::options::{ParticleDensity, ParticlesOptions};
 use crate::gpu_tests::scenes::{box_faces, builtin, floor, lambert, place, request, view};
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
@@ -10,8 +10,9 @@ use crate::renderer::{Frame, FrameRequest, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, Node, NodeId, Scene};
 
 fn settings(count: u32) -> Settings {
+    let (bounces, density) = (Some(3), ParticleDensity::Even);
     let particles =
-        ParticlesOptions { count, bounces: Some(3), gather: 8, ..ParticlesOptions::preset(Preset::Default) };
+        ParticlesOptions { count, bounces, density, gather: 8, ..ParticlesOptions::preset(Preset::Default) };
     Settings { particles, ..Settings::new(Technique::Particles, Preset::Default) }
 }
 
