@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::super::options::{ParticleDensity, ParticlesOptions};
-use super::moving::{add_block, difference, shift_and_turn};
+use super::moving::{add_block, counted, difference, shift_and_turn};
 use super::{against_paths, count, options, settings, stages};
 use crate::gpu_tests::scenes::{add_light, box_faces, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
@@ -131,16 +131,23 @@ fn faint_light_beside_bright_light_is_all_passed_on() {
 #[test]
 fn what_moves_under_a_sky_makes_all_anew() {
     let session = Session::open();
-    let mut scene = open_room();
-    let block = add_block(&mut scene, DVec3::new(-0.3, -0.7, 0.2));
     let camera = view(DVec3::new(1.2, 0.3, 0.6), DVec3::new(-1.0, -0.2, -0.5));
     let asked = FrameRequest { timing: Timing::Passes, ..request([64, 48], camera, &[Slot::Diffuse]) };
-    let settings = settings(options(3000, 2));
-    let mut renderer = session.renderer(&settings);
-    renderer.render(&scene, &asked).expect("a frame");
-    shift_and_turn(&mut scene, block);
-    let moved = renderer.render(&scene, &asked).expect("a frame");
-    assert_eq!(difference(&moved, &session.render(&scene, &settings, &asked)), 0.0);
+    for (density, anew) in [(ParticleDensity::Even, false), (ParticleDensity::Adaptive, true)] {
+        let mut scene = open_room();
+        // More stand than move.
+        let places = [DVec3::new(-0.3, -0.7, 0.2), DVec3::new(-1.0, -0.7, 1.0), DVec3::new(0.8, -0.7, -1.0)];
+        let [block, ..] = places.map(|at| add_block(&mut scene, at));
+        let settings = settings(of(density, options(3000, 2)));
+        let mut renderer = session.renderer(&settings);
+        renderer.render(&scene, &asked).expect("a frame");
+        shift_and_turn(&mut scene, block);
+        let moved = renderer.render(&scene, &asked).expect("a frame");
+        let whole = session.render(&scene, &settings, &asked);
+        let [again, all] = [&moved, &whole].map(|frame| counted(frame, "link/trace", "rays"));
+        assert_eq!(again == all, anew, "{density:?}: {again} links of {all}");
+        assert!(difference(&moved, &whole) <= if anew { 0.0 } else { 1e-3 }, "{density:?}");
+    }
 }
 
 /// Why particles lie evenly, and that they do.

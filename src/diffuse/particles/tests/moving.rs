@@ -21,7 +21,7 @@ fn asked(camera: &CameraView) -> FrameRequest {
 }
 
 /// What a pass of the method counted.
-fn count(frame: &Frame, pass: &str, name: &str) -> u64 {
+pub(super) fn counted(frame: &Frame, pass: &str, name: &str) -> u64 {
     let prefix = format!("diffuse/particles/{pass}");
     let passes = frame.timings.passes.iter().filter(|row| row.full_name().starts_with(&prefix));
     passes.filter_map(|row| row.work.get(name)).sum()
@@ -45,8 +45,8 @@ pub(super) fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64,
         step(scene, number);
         let moved = renderer.render(scene, &asked(camera)).expect("a frame");
         let whole = session.render(scene, &settings, &asked(camera));
-        let [again, all] = [&moved, &whole].map(|frame| count(frame, "link/trace", "rays"));
-        let facets = [&moved, &whole].map(|frame| count(frame, "measure/catch", "facets"));
+        let [again, all] = [&moved, &whole].map(|frame| counted(frame, "link/trace", "rays"));
+        let facets = [&moved, &whole].map(|frame| counted(frame, "measure/catch", "facets"));
         let difference = difference(&moved, &whole);
         println!("{}: {again} links of {all}, facets {facets:?}, difference {difference:.1e}", scene.name);
         assert!(again > 0 && (again as f64) < share * all as f64, "{again} links of {all}");
@@ -122,6 +122,6 @@ fn what_changes_its_shape_is_made_anew() {
     local.matrix3 *= 1.1;
     scene.set_local_transform(block, local).expect("a sound transform");
     let stretched = renderer.render(&scene, &asked(&camera)).expect("a frame");
-    assert_eq!(count(&stretched, "link/trace", "rays"), count(&first, "link/trace", "rays"));
+    assert_eq!(counted(&stretched, "link/trace", "rays"), counted(&first, "link/trace", "rays"));
     assert_eq!(difference(&stretched, &session.render(&scene, &settings, &asked(&camera))), 0.0);
 }
