@@ -6,8 +6,9 @@
 
 layout(set = 0, binding = 136) uniform usamplerBuffer particle_places;   // by number (particles/places.glsl)
 layout(set = 0, binding = 137) uniform usamplerBuffer particle_starts;
-layout(set = 0, binding = 138) uniform SpacingBlock { float particle_spacing; };     // √(area/count), m
-// Of each entry the position in the rays' space and the packed shading normal with headroom; behind all these the number.
+layout(set = 0, binding = 138) uniform SpacingBlock { float particle_spacing; };     // where they lie closest, m: √(area/count) if they lie evenly
+// Of each entry the position in the rays' space and the packed shading normal with headroom; behind all these the number and the spacing's bits.
 layout(set = 0, binding = 139) uniform usamplerBuffer particle_entries;
+layout(set = 0, binding = 140) uniform LevelsBlock { uint particle_levels; };        // of the grid
 
 #endif

@@ -14,6 +14,7 @@
 #include "particles/home_words.glsl"
 #include "particles/shading_normal.glsl"
 #include "particles/tallies.glsl"
+#include "particles/widths.glsl"
 
 // Finds the particle that stands for one facet (home.glsl, at its middle), by which links find it too, and adds the facet to what that particle stands for. So the
 // area of a particle is that of its catchment, not an even share:
@@ -25,7 +26,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0) uniform usamplerBuffer facets;
+layout(set = 0, binding = 0) uniform usamplerBuffer facets;  // records of triangles and of cells (facets.glsl)
 layout(set = 0, binding = 1) buffer Tallies { uint tallies[]; };  // area, red, green, blue of each; broad lobes' red, green, blue, unused (tallies.glsl)
 layout(set = 0, binding = 2) buffer Lost { uint lost[]; };
 layout(set = 0, binding = 3) buffer Homes { uint homes[]; };      // of each facet (home_words.glsl)
@@ -58,28 +59,14 @@ void count_facet(uint home, uvec3 albedo, uvec3 broad, uint area) {
 const float INSIDE = 0.02;
 const float ABOVE_FACET = 0.01;
 
-uint triangle_of(uint facet) {
-    uint low = 0u;
-    uint high = push.triangle_count;
-    [[dont_unroll]] for (uint halving = 0u; halving < 32u && high - low > 1u; ++halving) {
-        uint middle = (low + high) / 2u;
-        if (texelFetch(facets, int(middle)).x <= facet) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
 // Whether something stands on the facet: whether its corners do not see each other, across it.
-bool is_parted(Triangle triangle, Cuts cuts, uint number, vec3 face, float spacing) {
+bool is_parted(Triangle triangle, Span span, uint apex, vec3 face, float spacing) {
     vec3 front = front_normal(triangle);
     bool parted = false;
     [[dont_unroll]] for (uint diagonal = 0u; diagonal < 2u && !parted; ++diagonal) {
         vec2 low = vec2(INSIDE, diagonal == 0u ? INSIDE : 1.0 - INSIDE);
-        vec3 from = offset_ray_origin(point_of_triangle(triangle, place_in_facet(cuts, number, low), front), face);
-        vec3 to = offset_ray_origin(point_of_triangle(triangle, place_in_facet(cuts, number, 1.0 - low), front), face);
+        vec3 from = offset_ray_origin(point_of_triangle(triangle, place_in(span, apex, low), front), face);
+        vec3 to = offset_ray_origin(point_of_triangle(triangle, place_in(span, apex, 1.0 - low), front), face);
         vec3 lift = ABOVE_FACET * spacing * face;
         parted = is_occluded(from + lift, to - from, 1.0);
     }
@@ -87,41 +74,47 @@ bool is_parted(Triangle triangle, Cuts cuts, uint number, vec3 face, float spaci
 }
 
 void main() {
-    uint facet_count = texelFetch(facets, int(push.triangle_count)).x;
+    uvec2 counts = texelFetch(facets, int(push.triangle_count)).xy;
+    uint facet_count = counts.x;
     uint facet = push.again != 0u ? number_again(head, again, facet_count) : invocation_of_list();
     if (facet >= facet_count) {
         return;
     }
-    uint index = triangle_of(facet);
+    uint cell = record_of(facets, push.triangle_count + 1u, counts.y, facet);
+    uint index = record_of(facets, 0u, push.triangle_count, cell);
     uvec2 record = texelFetch(facets, int(index)).xy;
-    Cuts cuts = unpack_cuts(record.y);
-    bool back = facet - record.x >= cuts.columns * cuts.rows;
-    vec3 middle = middle_of_facet(cuts, facet - record.x);
+    uvec2 cell_record = texelFetch(facets, int(cell)).xy;
+    Cuts cells = unpack_cuts(record.y);
+    Cuts cuts = unpack_cuts(cell_record.y);
+    bool back = cell - record.x >= cells.columns * cells.rows;
+    Span span = part_of(part_of(WHOLE, cells, cell - record.x), cuts, facet - cell_record.x);
+    vec2 middle = middle_of(span, cuts.apex);
     Triangle triangle = load_triangle(triangles, index);
     Material material = load_material(materials, triangle.material);
     vec3 front = front_normal(triangle);
     vec3 face = back ? -front : front;
-    vec3 position = point_of_triangle(triangle, middle.xy, front);
-    vec3 normal = shading_normal(triangle, middle.xy, face);
+    vec3 position = point_of_triangle(triangle, middle, front);
+    vec3 normal = shading_normal(triangle, middle, face);
 
-    float spacing = spacing_of_particles();
+    float spacing = particle_spacing * spacing_of_width(cuts.width);
     vec3 start = offset_ray_origin(position, face);
-    Hit above = closest_hit(start, normal, 2.0 * LIFT * spacing);
-    float free = above.triangle == NO_TRIANGLE ? 3e38 : above.distance;
-    uint home = home_of(position, normal, lifted(start, normal, normal, free, spacing));
+    float looked = 2.0 * LIFT * spacing;
+    Hit above = closest_hit(start, normal, looked);
+    float free = above.triangle == NO_TRIANGLE ? looked : above.distance;
+    uint home = home_of(position, normal, lift_of_point(start, normal, normal, free));
     uint before = push.again != 0u ? home_of_word(homes[facet]) : LOST_FACET;
-    homes[facet] = home == NO_PARTICLE ? LOST_FACET : home | (is_parted(triangle, cuts, facet - record.x, face, spacing) ? PARTED_FACET : 0u);
+    homes[facet] = home == NO_PARTICLE ? LOST_FACET : home | (is_parted(triangle, span, cuts.apex, face, spacing) ? PARTED_FACET : 0u);
     // Alpha leaves nothing there; links may end beside its middle.
-    bool is_there = ALPHA_MASKS == 0u || material.alpha_cutoff < 0.0 || is_covered(triangle, material, middle.xy);
+    bool is_there = ALPHA_MASKS == 0u || material.alpha_cutoff < 0.0 || is_covered(triangle, material, middle);
     if (!is_there) {
         return;
     }
-    uvec3 albedo = uvec3(diffuse_albedo_at(triangle, material, middle.xy) * ALBEDO_STEPS + 0.5);
+    uvec3 albedo = uvec3(diffuse_albedo_at(triangle, material, middle) * ALBEDO_STEPS + 0.5);
     uvec3 broad = uvec3(0u);
     if (BROAD_LOBES != 0u) {
-        broad = uvec3(broad_albedo_at(triangle, material, middle.xy) * ALBEDO_STEPS + 0.5);
+        broad = uvec3(broad_albedo_at(triangle, material, middle) * ALBEDO_STEPS + 0.5);
     }
-    float area = texelFetch(areas, int(index)).x / float(cuts.sides) * middle.z;
+    float area = texelFetch(areas, int(index)).x / float(cells.sides) * share_of(span);
     float random = float(seed_of(facet, 2u) >> 8) / 16777216.0;
     uint steps = uint(area / area_step(facet_size) + random);
     if (before != LOST_FACET) {

@@ -10,6 +10,7 @@
 #include "lib/color.glsl"
 #include "lib/vectors.glsl"
 #include "particles/lists.glsl"
+#include "particles/places.glsl"
 
 // Light from the side, from along the surface at last, brings so much more to what turns towards it at most.
 const float MOST_TURNED = 3.0;
@@ -25,7 +26,7 @@ float turned(vec3 particles_normal, vec3 tangential, vec3 normal) {
 
 vec3 irradiance_at(vec3 position, vec3 normal, uint home) {
     uint list = texelFetch(list_lengths, int(home)).x;
-    float radius = KERNEL_SPACINGS * particle_spacing * reach_of_list(list);
+    float radius = KERNEL_SPACINGS * spacing_of_particle(particle_places, home) * reach_of_list(list);
     // Moments of offsets (u, v) in units of the radius, and of irradiance with them.
     float weights = 0.0;
     vec2 first = vec2(0.0);

@@ -10,7 +10,7 @@ const uint DARK_LINK = 0xFFFFFFFEu;     // where nothing is scattered diffusely
 // Set where the link also brings light (arrivals.glsl).
 const uint BRINGS_LIGHT = 0x80000000u;
 
-// Set of a link for gathering whose end is nearer than this, spacings of particles.
+// Set of a link for gathering whose end is nearer than this, spacings of the closest particles.
 const uint NEAR_LINK = 0x40000000u;
 const float NEAR_SPACINGS = 2.0;
 

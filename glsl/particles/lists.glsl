@@ -5,7 +5,7 @@
 
 // Evenly spread, π·3² = 28 particles lie within reach.
 const uint LIST_CAPACITY = 48u;
-// The radius of the kernel that irradiance is read with, in spacings.
+// The radius of the kernel that irradiance is read with, in spacings of the particle whose list it is.
 const float KERNEL_SPACINGS = 2.0;
 
 const uint REACH_STEPS = 1024u;

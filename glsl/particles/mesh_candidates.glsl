@@ -13,7 +13,7 @@ const float CANDIDATE_ACROSS = 0.25;
 
 // How many there are.
 uint each_candidate(vec3 position, vec3 normal, uint widening) {
-    float spacing = spacing_of_particles();
+    float spacing = particle_spacing;
     float reach = RADIUS_SPACINGS * spacing * exp2(float(widening));
     uint bucket_count = uint(textureSize(particle_starts)) - 1u;
     ivec3 low = cell_of(position - reach, spacing);
@@ -21,7 +21,7 @@ uint each_candidate(vec3 position, vec3 normal, uint widening) {
     uint count = 0u;
     [[dont_unroll]] for (int number = 0; number < size.x * size.y * size.z; ++number) {
         ivec3 cell = low + ivec3(number % size.x, number / size.x % size.y, number / (size.x * size.y));
-        int bucket = int(bucket_of(cell, bucket_count));
+        int bucket = int(bucket_of(cell, 0u, bucket_count));
         uint end = texelFetch(particle_starts, bucket + 1).x;
         [[dont_unroll]] for (uint entry = texelFetch(particle_starts, bucket).x; entry < end; ++entry) {
             uvec4 record = texelFetch(particle_entries, int(entry));

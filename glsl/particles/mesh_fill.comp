@@ -51,7 +51,7 @@ void main() {
         return;
     }
     uint number = push.all_count > 0u ? slot : texelFetch(numbers, int(slot)).x;
-    RadianceParticle particle = radiance_particle(number, spacing_of_particles());
+    RadianceParticle particle = radiance_particle(number, particle_spacing);
     held = record.xy;
     next_entry = texelFetch(starts, int(slot)).x;
     each_candidate(particle.position, particle.normal, record.z >> 8);

@@ -40,7 +40,7 @@ void main() {
     vec4 lobe = HAS_SPECULAR != 0u ? texelFetch(specular, pixel, 0) : vec4(0.0);
     Surface point = unpack_surface(position_rs, texelFetch(surface, pixel, 0), lobe);
     uvec4 spot = imageLoad(spots, pixel);
-    uvec4 read = read_spot(spot, lifted(position, point.geometric_normal, to_eye, 3e38, spacing_of_particles()));
+    uvec4 read = read_spot(spot, lifted(lift_of_point(position, point.geometric_normal, to_eye, 3e38), particle_spacing));
     if (read.x == NO_SPOT && max3(indirect_diffuse_albedo(point)) > 0.0) {
         read.y = seen_home(position, point.geometric_normal, to_eye, 3e38);
         atomicAdd(counts[1], 1u);

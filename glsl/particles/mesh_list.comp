@@ -38,7 +38,7 @@ vec3 own_normal;
 
 void take_candidate(uint number, uint entry, uvec4 record, vec3 way) {
     bool tested = test_all || is_crowded(record.w) || abs(dot(way, own_normal)) > OFF_PLANE * length(way);
-    if (!tested || sees_entry(looks_from, entry, spacing_of_particles())) {
+    if (!tested || sees_entry(looks_from, entry, particle_spacing)) {
         held[number >> 5] |= 1u << (number & 31u);
     }
 }
@@ -61,7 +61,7 @@ void main() {
     if (slot >= count) {
         return;
     }
-    float spacing = spacing_of_particles();
+    float spacing = particle_spacing;
     RadianceParticle particle = radiance_particle(push.all_count > 0u ? slot : texelFetch(numbers, int(slot)).x, spacing);
     float lift = free_lift(particle.position, particle.face, particle.normal, spacing);
     looks_from = particle.position + particle.normal * lift;

@@ -30,7 +30,7 @@ void main() {
     Surface point = mirrored.surface;
     vec3 normal = point.geometric_normal;
     uvec4 spot = spots[index];
-    uvec4 read = read_spot(spot, lifted(point.position_rs, normal, mirrored.to_viewer, mirrored.ray_length, spacing_of_particles()));
+    uvec4 read = read_spot(spot, lifted(lift_of_point(point.position_rs, normal, mirrored.to_viewer, mirrored.ray_length), particle_spacing));
     if (read.x == NO_SPOT && max3(indirect_diffuse_albedo(point)) > 0.0) {
         read.y = seen_home(point.position_rs, normal, mirrored.to_viewer, mirrored.ray_length);
         atomicAdd(counts[1], 1u);

@@ -3,6 +3,7 @@
 #include "groups/particles.glsl"
 #include "lib/vectors.glsl"
 #include "particles/lists.glsl"
+#include "particles/places.glsl"
 
 // The radiance that one particle sends out, W/(m²·sr): what lights gave it, and what was scattered to it and its neighbours,
 //
@@ -49,7 +50,7 @@ void main() {
         float watts_a_step = 1.0 / max(texelFetch(scale, 0).x, 1e-30);
         vec4 around = vec4(0.0);
         vec3 position = uintBitsToFloat(texelFetch(particle_places, int(particle)).xyz);
-        float radius = KERNEL_SPACINGS * particle_spacing;
+        float radius = KERNEL_SPACINGS * spacing_of_particle(particle_places, particle);
         uint start = particle * LIST_CAPACITY;
         uint end = start + length_of_list(texelFetch(list_lengths, int(particle)).x);
         [[dont_unroll]] for (uint place = start; place < end; ++place) {

@@ -15,7 +15,8 @@
 // ρ is the albedo of the diffuse lobe; of light as lights gave it broad specular lobes pass their share of lamps' light on in the same directions, since no photon is sent to
 // them and no link from elsewhere meets lamps by way of them (it does the sky). Further on, links go on off specular lobes by themselves.
 //
-// Sums are whole numbers of steps, rounded to nearest, so that their order does not matter.
+// Sums are whole numbers of steps, so that their order does not matter. What a link takes along is rounded up with the probability of what is beyond a whole: where
+// particles are small and the sun shines next door, it is less than a step.
 
 layout(local_size_x = 64) in;
 
@@ -61,13 +62,15 @@ void add_to(uint end, uvec3 share) {
     }
 }
 
-// Along so many links, from the number `first` on.
-void pass_on(uint particle, uvec3 share, uint first, uint count) {
-    if (share == uvec3(0u)) {
+// So many steps along each of so many links, from the number `first` on.
+void pass_on(uint particle, vec3 steps, uint first, uint count) {
+    if (steps == vec3(0.0)) {
         return;
     }
+    uint seed = seed_of(particle, push.number);
     [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
         uint link = particle * push.link_count + first + i;
+        uvec3 share = uvec3(steps + float(seed_of(seed, i) >> 8) / 16777216.0);
         add_to(texelFetch(scatter_links, int(link)).x, share);
         if (SECOND_ENDS != 0u) {
             add_to(texelFetch(scatter_links, int(push.particle_count * push.link_count + link)).x, share);
@@ -104,13 +107,13 @@ void main() {
             all += given.a * texelFetch(matter, int(push.particle_count + particle)).rgb;
         }
         sum = given.rgb;
-        pass_on(particle, uvec3(all * given.rgb * (steps / float(push.link_count)) + 0.5), 0u, push.link_count);
+        pass_on(particle, all * given.rgb * (steps / float(push.link_count)), 0u, push.link_count);
     }
     if (FROM_STEPS != 0u) {
         vec3 flux = vec3(take_received(particle)) / max(steps, 1e-30);
         sum += flux;
         uint drawn = seed_of(seed_of(particle, 0xB0u), push.number) % push.link_count;
-        pass_on(particle, uvec3(albedo * flux * steps + 0.5), drawn, 1u);
+        pass_on(particle, albedo * flux * steps, drawn, 1u);
         total[particle] += vec4(sum, 0.0);
     } else {
         total[particle] = vec4(sum, 0.0);

@@ -8,15 +8,15 @@ const float EDGE_ON = 0.02;
 
 // `normal`: of the triangle, `to_viewer`: unit, the viewer `distance` away.
 uint seen_home(vec3 position, vec3 normal, vec3 to_viewer, float distance) {
-    vec3 from = lifted(position, normal, to_viewer, distance, spacing_of_particles());
-    uint home = home_of(position, normal, from);
+    Lifted lift = lift_of_point(position, normal, to_viewer, distance);
+    uint home = home_of(position, normal, lift);
     // Edge-on, rounding decides which side one sees.
     if (home == NO_PARTICLE && dot(to_viewer, normal) < EDGE_ON) {
-        home = home_of(position, -normal, from);
+        home = home_of(position, -normal, lift);
     }
     // A thing smaller than the spacing, on which no particle came to lie, gets the light of what is around.
     if (home == NO_PARTICLE) {
-        home = home_among(position, normal, from, NOT_OPPOSITE, false);
+        home = home_among(position, normal, lift, NOT_OPPOSITE, false);
     }
     if (home != NO_PARTICLE) {
         atomicOr(marks[home], 1u);

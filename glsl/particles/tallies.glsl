@@ -6,7 +6,7 @@
 layout(constant_id = 0) const uint BROAD_LOBES = 0u;
 
 const float ALBEDO_STEPS = 4095.0;
-// Steps of an area that is as large as a facet may be.
+// Steps of an area that is as large as a facet may be; where particles do not lie evenly, of a quarter of the largest.
 const float AREA_STEPS = 128.0;
 
 // m²

@@ -22,6 +22,7 @@ layout(push_constant, scalar) uniform Push {
     int level_count;
     float depth_threshold;   // relative to the distance
     float normal_threshold;
+    float slope_threshold;   // change of depth over the region, relative to the distance
 } push;
 
 Square square_of_pixel(ivec2 pixel) {
@@ -48,7 +49,7 @@ void main() {
     for (int i = 0; i < 4; ++i) {
         quarters[i] = square_of_pixel(2 * cell + ivec2(i & 1, i >> 1));
     }
-    Square region = merged(quarters, 1.0, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
+    Square region = merged(quarters, 1.0, push.depth_threshold, unit_of_depth(camera), push.normal_threshold, push.slope_threshold);
     if (is_inside(cell, push.size / 2)) {
         imageStore(planes, cell, region.plane);
         imageStore(normals, cell, pack_normals(region));

@@ -23,6 +23,7 @@ layout(push_constant, scalar) uniform Push {
     int level_count;
     float depth_threshold;   // relative to the distance
     float normal_threshold;
+    float slope_threshold;   // change of depth over the region, relative to the distance
 } push;
 
 Square square_of_region(ivec2 cell) {
@@ -39,7 +40,7 @@ void main() {
         quarters[i] = square_of_region(2 * cell + ivec2(i & 1, i >> 1));
     }
     float side = float(1 << (push.level - 1));
-    Square region = merged(quarters, side, push.depth_threshold, unit_of_depth(camera), push.normal_threshold);
+    Square region = merged(quarters, side, push.depth_threshold, unit_of_depth(camera), push.normal_threshold, push.slope_threshold);
     if (is_inside(cell, size_of_level(push.size, push.level))) {
         imageStore(planes, cell, region.plane);
         imageStore(normals, cell, pack_normals(region));

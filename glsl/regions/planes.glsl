@@ -8,7 +8,8 @@
 //
 // In place of the minimum and maximum of depth (Nichols & Wyman 2009; Quyen 2014, section 3.2.2.1), a grazing floor stays one
 // region and a step does not. A change of near/z over its value is the change of z over z: e/d is relative to the distance. Where surfaces
-// turn without a step, the components of the normals tell, by minimum and maximum as in the paper.
+// turn without a step, the components of the normals tell, by minimum and maximum as in the paper. What lies flat along a grazing line of sight is many times as long as
+// a square that faces the eye: where light that changes along it is read, depth may not change by too much over one region.
 #ifndef VPL_REGION_PLANES
 #define VPL_REGION_PLANES
 
@@ -31,7 +32,7 @@ Square unpack_square(vec4 plane, uvec4 normals) {
 }
 
 // `side`: of one of the four, in pixels; their order: (0,0), (1,0), (0,1), (1,1).
-Square merged(Square quarters[4], float side, float depth_threshold, float depth_unit, float normal_threshold) {
+Square merged(Square quarters[4], float side, float depth_threshold, float depth_unit, float normal_threshold, float slope_threshold) {
     Square whole = quarters[0];
     bool flat_ = whole.plane.x > 0.0;
     whole.plane.x += 0.5 * side * (whole.plane.y + whole.plane.z);
@@ -46,7 +47,9 @@ Square merged(Square quarters[4], float side, float depth_threshold, float depth
         whole.low_normal = min(whole.low_normal, quarter.low_normal);
         whole.high_normal = max(whole.high_normal, quarter.high_normal);
     }
-    flat_ = flat_ && whole.plane.w <= depth_threshold * (depth_unit > 0.0 ? depth_unit : whole.plane.x)
+    float unit = depth_unit > 0.0 ? depth_unit : whole.plane.x;
+    flat_ = flat_ && whole.plane.w <= depth_threshold * unit
+            && 2.0 * side * (abs(whole.plane.y) + abs(whole.plane.z)) <= slope_threshold * unit
             && max3(whole.high_normal - whole.low_normal) <= normal_threshold;
     if (!flat_ || whole.plane.x <= 0.0) {
         whole.plane = vec4(0.0);

@@ -7,7 +7,7 @@ use super::links::link;
 use super::lists::list;
 use super::measure::measure;
 use super::moved::Moved;
-use super::options::ParticlesOptions;
+use super::options::{ParticleDensity, ParticlesOptions, ParticlesReceivers};
 use super::place::Placed;
 use super::stage::Stage;
 use crate::frame::rays::TracedScene;
@@ -29,7 +29,7 @@ pub(super) struct ParticleSpace {
     pub(super) levels: Levels,
     pub(super) rays: SceneRays,
     pub(super) group: Particles,
-    /// First facet of each triangle and how it is cut; the particle that stands for each facet (glsl/particles/facets.glsl).
+    /// Records of triangles and of cells; the particle that stands for each facet (glsl/particles/facets.glsl).
     pub(super) facets: BufferRef<u32>,
     pub(super) homes: BufferRef<u32>,
     /// Albedo and area of each.
@@ -50,13 +50,28 @@ fn count_of(scene: &TracedScene, options: &ParticlesOptions) -> u32 {
     if options.count > 0 { options.count } else { by_area.clamp(20_000.0, 200_000.0) as u32 }
 }
 
+/// Why particles lie evenly, if they do.
+fn why_even(scene: &TracedScene, options: &ParticlesOptions) -> Option<&'static str> {
+    if options.density == ParticleDensity::Even {
+        Some("particles lie evenly")
+    } else if options.receivers == ParticlesReceivers::Mesh {
+        Some("radiance particles take evenly spread ones")
+    } else if scene.facts.animated {
+        Some("particles lie evenly where something is animated")
+    } else if !scene.facts.sky && scene.facts.directional_lights == 0 {
+        Some("neither a sky nor a sun shines")
+    } else {
+        None
+    }
+}
+
 impl ParticleSpace {
     /// Declares the stage.
     pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, options: &ParticlesOptions) -> ParticleSpace {
         let particle_count = count_of(scene, options);
-        let placed = Placed::declare(graph, scene, particle_count);
+        let placed = Placed::declare(graph, scene, particle_count, why_even(scene, options));
         let levels = Levels::new(scene, options);
-        let kept = Kept::declare(graph, scene, options, (particle_count, levels));
+        let kept = Kept::declare(graph, scene, options, (particle_count, levels), &placed.cells);
         let moved = scene.motion.as_ref().filter(|motion| kept.carry_on(graph, motion.from));
         let moved = moved.map(|motion| Moved::declare(graph, motion, &placed, particle_count));
         let lost = graph.buffer::<u32>("particles.lost", 2);

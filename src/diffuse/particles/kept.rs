@@ -1,12 +1,13 @@
 //! What is kept of particles from one geometry to the next, so that where a part of the surfaces moved the rest need not be done again.
 
+use super::cells::Cells;
 use super::events::Levels;
 use super::options::ParticlesOptions;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::{Graph, hash_of};
 
-/// Facets for which there is room: for each particle, beside one for each side of a triangle. Some 18 fall to a particle, more where triangles are thin.
+/// Facets for which there is room: for each particle, beside one for each cell. Some 18 fall to a particle, more where triangles are thin.
 const FACETS: u32 = 24;
 /// Particles whose links are in one buffer: 32 MiB of them at 16×16 a particle, well below the least limit of a buffer.
 const CHUNK: u32 = 32_768;
@@ -30,7 +31,7 @@ pub(super) struct Kept {
     pub(super) sky_levels: Levels,
     /// Where the second ends of links for scattering begin.
     pub(super) second_ends: u32,
-    /// First facet of each triangle and how it is cut (glsl/particles/facets.glsl), the number of facets behind all of them.
+    /// Records of triangles and of cells (glsl/particles/facets.glsl).
     pub(super) facets: BufferRef<u32>,
     /// Of a facet, at most, m.
     pub(super) facet_size: BufferRef<f32>,
@@ -54,6 +55,7 @@ impl Kept {
         scene: &TracedScene,
         options: &ParticlesOptions,
         (particle_count, levels): (u32, Levels),
+        cells: &Cells,
     ) -> Kept {
         let &ParticlesOptions { scatter, gather, emitter_samples, .. } = options;
         let count = particle_count as usize;
@@ -69,6 +71,9 @@ impl Kept {
         let arrival_words = if scene.emissive_count > 0 { 9 } else { 3 };
         let sky_levels = if sky_shines { levels } else { Levels::default() };
         let arrival_words = arrival_words + 3 * sky_levels.late() as usize;
+        let cell_room = cells.weights.count();
+        // Where particles do not lie evenly their places depend on what is around.
+        let around = if cells.adaptive > 0 { scene.surfaces_key() } else { 0 };
         Kept {
             rest: hash_of(&(
                 scene.emission_key(),
@@ -79,16 +84,16 @@ impl Kept {
                 sky_shines,
                 scene.backs(),
                 sky_levels,
+                around,
             )),
             surfaces: scene.surfaces_key(),
             shapes: scene.shapes,
             sky_shines,
             sky_levels,
             second_ends,
-            facets: graph.carried_buffer("particles.facets", 2 * (scene.triangle_count as usize + 1)),
+            facets: graph.carried_buffer("particles.facets", 2 * (scene.triangle_count as usize + 1 + cell_room)),
             facet_size: graph.carried_buffer("particles.facet_size", 1),
-            homes: graph
-                .carried_buffer("particles.facet_homes", 2 * scene.triangle_count as usize + FACETS as usize * count),
+            homes: graph.carried_buffer("particles.facet_homes", cell_room + FACETS as usize * count),
             tallies: graph.carried_buffer("particles.tallies", 4 * (1 + scene.facts.broad as usize) * count),
             chunks,
             scatter_links: graph.carried_buffer("particles.scatter_links", ends * second_ends as usize),

@@ -2,13 +2,12 @@
 
 use super::formats::{FLOAT, FLOATS4, WORD, WORDS2, WORDS4};
 use super::moved::{AgainList, Moved, groups_of_list};
-use super::place::{Placed, backs_of};
+use super::place::Placed;
 use super::stage::Stage;
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::particles::{
-    Catch, CatchPush, FacetSizes, FacetSizesPush, Facets, FacetsPush, Matter, MatterPush, TouchedFacets,
-    TouchedFacetsPush,
+    Catch, CatchPush, Facets, FacetsPush, Matter, MatterPush, TouchedFacets, TouchedFacetsPush,
 };
 
 /// Albedo and area of each particle; where some have one, the albedo of broad specular lobes behind those of all.
@@ -55,21 +54,14 @@ pub(super) fn measure(graph: &mut Graph<'_>, stage: &Stage) -> BufferRef<[f32; 4
     matter
 }
 
-/// Cuts triangles into facets.
+/// Cuts cells into facets.
 fn cut(graph: &mut Graph<'_>, Stage { placed, kept, .. }: &Stage) {
     let (triangle_count, key) = (placed.triangle_count, kept.cut_key());
-    let sizes = graph.buffer::<[f32; 4]>("particles.triangle_sizes", triangle_count as usize);
-    let pass = FacetSizes {
-        scene_rays: placed.rays.clone(),
-        areas: placed.areas.texels(FLOAT),
-        has_backs: u32::from(placed.backs.is_some()),
-        backs: backs_of(placed.backs),
-        sizes: sizes.write(),
-        push: FacetSizesPush { triangle_count },
-    };
-    graph.pass("diffuse/particles/measure/sizes", pass).threads([triangle_count, 1, 1]);
     let pass = Facets {
-        sizes: sizes.texels(FLOATS4),
+        adaptive: placed.cells.adaptive,
+        cells: placed.cells.records.texels(WORDS2),
+        weights: placed.cells.weights.texels(WORDS2),
+        sizes: placed.cells.sizes.texels(FLOATS4),
         spacing: placed.spacing.texels(FLOAT),
         facets: kept.facets.write(),
         facet_size: kept.facet_size.write(),

@@ -7,6 +7,7 @@
 //! 3. Shading (`shading.rs`): the particles around what the picture shows gather through all their links; pixels read the lists of their particle, or interpolate
 //!    between radiance particles (`mesh/`).
 
+mod cells;
 mod events;
 mod formats;
 mod geometry;

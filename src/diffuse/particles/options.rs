@@ -18,6 +18,16 @@ choices! {
 }
 
 choices! {
+    /// How densely particles lie.
+    ParticleDensity {
+        /// Equally everywhere: the paper.
+        Even = "even",
+        /// Farther apart where other surfaces are far away, or where nothing is seen at all.
+        Adaptive = "adaptive",
+    }
+}
+
+choices! {
     /// Which radiance particles have estimation lists.
     ParticleLists {
         /// All of them, made with the geometry: the paper.
@@ -42,6 +52,8 @@ options! {
     ParticlesOptions, "particles":
     /// Area particles on all diffuse surfaces; 0: 20,000 to 200,000 by the scene's area.
     count: u32 = 0, draft = 20_000, paper = 150_000; OptionKind::Integer(0, 600_000), "particles", "linear";
+    /// How densely particles lie, at the same number. `adaptive` is `even` without a sky or a sun, in scenes with an animation and with `receivers=mesh`; what moves otherwise makes everything anew.
+    density: ParticleDensity = ParticleDensity::Adaptive, paper = ParticleDensity::Even; OptionKind::Choice(ParticleDensity::NAMES), "", "";
     /// Scattering steps, the first one included, or gathering steps in their place; the last gathering step is one more. Reflections and refractions count as steps. None: until less than a hundredth of the flux is left.
     bounces: Option<u32> = None, paper = Some(8); OptionKind::Limit(0, MOST_BOUNCES), "scatterings", "linear";
     /// How light goes from particle to particle. Bounces mean the same light paths either way.
@@ -58,7 +70,7 @@ options! {
     spacing: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
     /// With `receivers=mesh` which radiance particles have estimation lists.
     lists: ParticleLists = ParticleLists::Used, paper = ParticleLists::All; OptionKind::Choice(ParticleLists::NAMES), "", "";
-    /// With `receivers=regions` rays a side of the square of directions in which each region that has something near looks for itself at what is nearer than two spacings of particles; 0: none.
+    /// With `receivers=regions` rays a side of the square of directions in which each region that has something near looks for itself at what is nearer than two spacings of the closest particles; 0: none.
     near: u32 = 0; OptionKind::OneOf(&[0, 2, 4, 8, 16]), "rays", "quadratic";
     /// Photons from lights to mirrors and glass, and on to the first diffuse surface.
     photons: u32 = 200_000, draft = 40_000, high = 1_000_000; OptionKind::Integer(0, 8_000_000), "photons", "linear";

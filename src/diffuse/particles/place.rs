@@ -1,9 +1,10 @@
 //! Particles on the surfaces, numbered as they lie on the triangles, and the grid that finds them. All of them are placed anew whenever geometry changes: that
 //! takes a hundredth of the time of their links.
 
-use super::formats::{FLOAT, WORD, WORDS4};
+use super::cells::{Cells, backs_of};
+use super::formats::{FLOAT, WORD, WORDS2, WORDS4};
 use crate::frame::rays::TracedScene;
-use crate::graph::bindings::{BufferRef, TexelBuffer};
+use crate::graph::bindings::BufferRef;
 use crate::graph::{Dependence, Graph};
 use crate::shaders::buckets::{Starts, StartsPush};
 use crate::shaders::groups::{Particles, SceneRays};
@@ -17,15 +18,20 @@ pub(super) struct Placed {
     pub(super) triangle_count: u32,
     /// Diffuse area of each triangle, m², of both sides where both count.
     pub(super) areas: BufferRef<f32>,
+    /// Where particles lie closest, m.
     pub(super) spacing: BufferRef<f32>,
-    /// A bit for each one-sided triangle whose back counts too, where there are any.
-    pub(super) backs: Option<BufferRef<u32>>,
+    pub(super) cells: Cells,
     pub(super) group: Particles,
 }
 
 impl Placed {
-    /// Declares so many.
-    pub(super) fn declare(graph: &mut Graph<'_>, scene: &TracedScene, particle_count: u32) -> Placed {
+    /// Declares so many; `even`: why they lie evenly, if they do.
+    pub(super) fn declare(
+        graph: &mut Graph<'_>,
+        scene: &TracedScene,
+        particle_count: u32,
+        even: Option<&'static str>,
+    ) -> Placed {
         let rays = scene.rays(graph);
         let triangle_count = scene.triangle_count;
         let threads = [particle_count, 1, 1];
@@ -43,12 +49,16 @@ impl Placed {
         };
         graph.pass("diffuse/particles/place/areas", pass).threads([triangle_count, 1, 1]);
 
-        let sums = graph.buffer::<f32>("particles.area_sums", triangle_count as usize + 1);
+        let cells = Cells::declare(graph, scene, (areas, backs), particle_count, even);
+        let sums = graph.buffer::<f32>("particles.area_sums", cells.weights.count() + 1);
         let spacing = graph.buffer::<f32>("particles.spacing", 1);
+        let levels = graph.buffer::<u32>("particles.levels", 1);
         let pass = AreaSums {
-            areas: areas.texels(FLOAT),
+            weights: cells.weights.texels(WORDS2),
+            cells: cells.records.texels(WORDS2),
             sums: sums.write(),
             spacing: spacing.write(),
+            levels: levels.write(),
             push: AreaSumsPush { triangle_count, particle_count },
         };
         graph.pass("diffuse/particles/place/sums", pass).groups([1, 1, 1]);
@@ -65,8 +75,8 @@ impl Placed {
             places: places.write(),
             buckets: buckets.write(),
             counts: counts.read_write(),
-            has_backs: u32::from(backs.is_some()),
-            backs: backs_of(backs),
+            cells: cells.records.texels(WORDS2),
+            weights: cells.weights.texels(WORDS2),
             push: PlacePush { triangle_count, particle_count, bucket_count },
         };
         let pass = graph.pass("diffuse/particles/place/points", pass);
@@ -103,6 +113,7 @@ impl Placed {
             sorted: sorted.texels(WORDS4),
             starts: starts.texels(WORD),
             spacing_of_all: spacing.texels(FLOAT),
+            levels_of_all: levels.texels(WORD),
             numbers: numbers.texels(WORD),
             places: places.texels(WORDS4),
             entries: entries.write(),
@@ -113,13 +124,9 @@ impl Placed {
             particle_places: places.texels(WORDS4),
             particle_starts: starts.texels(WORD),
             particle_spacing: spacing.uniform(),
+            particle_levels: levels.uniform(),
             particle_entries: entries.texels(WORDS4),
         };
-        Placed { rays, triangle_count, areas, spacing, backs, group }
+        Placed { rays, triangle_count, areas, spacing, cells, group }
     }
-}
-
-/// As passes bind them.
-pub(super) fn backs_of(backs: Option<BufferRef<u32>>) -> TexelBuffer {
-    backs.map_or(TexelBuffer::absent(), |backs| backs.texels(WORD))
 }

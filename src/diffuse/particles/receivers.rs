@@ -19,7 +19,8 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const REGIONS_PER_GROUP: u32 = 64;
 /// Sizes of regions at most: of 1, 2, 4, 8 pixels a side.
 const LEVELS: u32 = 4;
-const RULE: RegionRule = RegionRule { piece: "diffuse/particles", depth_threshold: 2e-4, normal_threshold: 0.1 };
+const RULE: RegionRule =
+    RegionRule { piece: "diffuse/particles", depth_threshold: 2e-4, normal_threshold: 0.1, slope_threshold: 0.08 };
 
 /// What irradiance is read for, each with the particle that stands for it.
 pub(super) enum Receivers {

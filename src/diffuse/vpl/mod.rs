@@ -99,7 +99,7 @@ pub(crate) struct Made {
 
 pub(crate) fn rule_of(options: &VplOptions) -> RegionRule {
     let (depth_threshold, normal_threshold) = (options.depth_threshold as f32, options.normal_threshold as f32);
-    RegionRule { piece: "diffuse/vpl", depth_threshold, normal_threshold }
+    RegionRule { piece: "diffuse/vpl", depth_threshold, normal_threshold, slope_threshold: f32::MAX }
 }
 
 /// Declares the method's passes in the order in which they run.

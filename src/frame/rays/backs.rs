@@ -13,6 +13,8 @@ const POINTS: usize = 2048;
 const RAYS: usize = 16;
 /// Rays that have to meet the backs of a part: of gaps and cracks fewer do.
 const LEAST: u32 = 8;
+/// Rays of one point that count: one that lies on the edge of what stands on the part may see into it by rounding alone.
+const A_POINT: u32 = 2;
 /// Rays start this far from their surface, over the scene's radius.
 const LIFT: f32 = 1e-4;
 
@@ -48,19 +50,34 @@ pub(super) fn backs(
         let hits = (0..RAYS).filter_map(|ray| rays.first(origin, direction(point, ray, normal), f32::INFINITY));
         let numbers = hits.filter(|hit| !hit.front).map(|hit| stride * rays.number(&hit));
         let numbers: Vec<usize> = numbers.filter(|&number| is_one_sided(number)).collect();
-        if 2 * numbers.len() > RAYS { Vec::new() } else { numbers }
+        let numbers = if 2 * numbers.len() > RAYS { Vec::new() } else { numbers };
+        numbers.into_iter().map(move |number| (point, number))
     });
-    let mut counts = vec![0; parts.len()];
-    for number in met.collect::<Vec<usize>>() {
-        counts[parts.partition_point(|part| part.triangles().end <= number)] += 1;
-    }
+    let met: Vec<(usize, usize)> = met.collect();
+    let met =
+        met.into_iter().map(|(point, number)| (point, parts.partition_point(|part| part.triangles().end <= number)));
+    let seen = seen_parts(met, parts.len());
     let mut words = Vec::new();
-    for (part, _) in parts.iter().zip(counts).filter(|(_, count)| *count >= LEAST) {
+    for (part, _) in parts.iter().zip(seen).filter(|(_, seen)| *seen) {
         words.resize(triangles.len().div_ceil(32), 0);
         let seen = part.triangles().filter(|&number| is_one_sided(number));
         seen.for_each(|number| words[number / 32] |= 1 << (number % 32));
     }
     words
+}
+
+/// Which of so many parts are seen, by the points and parts of rays that met backs, point by point.
+fn seen_parts(met: impl Iterator<Item = (usize, usize)>, part_count: usize) -> Vec<bool> {
+    let mut counts = vec![0; part_count];
+    // The last point that met each, and how many of its rays did.
+    let mut own = vec![(usize::MAX, 0); part_count];
+    for (point, part) in met {
+        let (last, rays) = &mut own[part];
+        *rays = if *last == point { *rays + 1 } else { 1 };
+        *last = point;
+        counts[part] += u32::from(*rays <= A_POINT);
+    }
+    counts.into_iter().map(|count| count >= LEAST).collect()
 }
 
 /// One of a sequence that fills the triangle.
@@ -78,4 +95,19 @@ fn direction(point: usize, ray: usize, normal: Vec3) -> Vec3 {
     let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
     let (tangent, bitangent) = normal.any_orthonormal_pair();
     radius * (cosine as f32 * tangent + sine as f32 * bitangent) + (1.0 - radius * radius).sqrt() * normal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_single_point_says_that_a_back_is_seen() {
+        let rays = |points: usize, each: usize| (0..points).flat_map(move |point| (0..each).map(move |_| (point, 1)));
+        assert_eq!(seen_parts(rays(1, 8), 2), [false, false]);
+        assert_eq!(seen_parts(rays(3, 8), 2), [false, false]);
+        assert_eq!(seen_parts(rays(4, 2), 2), [false, true]);
+        assert_eq!(seen_parts(rays(8, 1), 2), [false, true]);
+        assert_eq!(seen_parts(rays(7, 1), 2), [false, false]);
+    }
 }

@@ -41,7 +41,7 @@ pub(crate) fn pyramid(
     group_regions: Option<u32>,
 ) -> Pyramid {
     let size = buffer.size;
-    let RegionRule { depth_threshold, normal_threshold, .. } = *rule;
+    let RegionRule { depth_threshold, normal_threshold, slope_threshold, .. } = *rule;
     let info = |format| ImageInfo {
         format,
         extent: [size[0] / 2, size[1] / 2, 1],
@@ -68,6 +68,7 @@ pub(crate) fn pyramid(
             level_count: level_count.cast_signed(),
             depth_threshold,
             normal_threshold,
+            slope_threshold,
         },
     };
     graph.pass(&rule.pass("regions/squares-2"), pass).unordered().pixels(size.map(|side| side.div_ceil(2)));
@@ -87,6 +88,7 @@ pub(crate) fn pyramid(
                 level_count: level_count.cast_signed(),
                 depth_threshold,
                 normal_threshold,
+                slope_threshold,
             },
         };
         // Those that the image cuts off too: their quarters may be valid.

@@ -9,6 +9,8 @@ pub(crate) struct RegionRule {
     pub(crate) depth_threshold: f32,
     /// By how much a component of the unit normal may vary.
     pub(crate) normal_threshold: f32,
+    /// By how much depth may change over it, over its distance.
+    pub(crate) slope_threshold: f32,
 }
 
 impl RegionRule {

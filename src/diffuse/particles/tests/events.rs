@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::super::options::{ParticleTransport, ParticlesOptions};
+use super::super::options::{ParticleDensity, ParticleTransport, ParticlesOptions};
 use super::moving::{add_block, difference, shift_and_turn};
 use super::{against_paths, options, passes_run, settings};
 use crate::gpu_tests::scenes::{add_light, box_faces, closed_box, lambert, place, quad, request, view};
@@ -90,7 +90,8 @@ fn specular_events_are_bounces() {
 /// The sky that links find by way of mirrors is summed anew where they are traced again, event by event.
 #[test]
 fn the_sky_in_mirrors_follows_what_moves() {
-    let (session, settings) = (Session::open(), settings(options(3000, 3)));
+    let options = ParticlesOptions { density: ParticleDensity::Even, ..options(3000, 3) };
+    let (session, settings) = (Session::open(), settings(options));
     let mut scene = mirrored_room(true);
     let block = add_block(&mut scene, DVec3::new(-0.3, -0.6, 0.1));
     let asked = FrameRequest { timing: Timing::Passes, ..request([48, 32], inside(), &[Slot::Diffuse]) };

@@ -1,6 +1,7 @@
 //! Particles against closed forms, against paths, and what stands when something moves.
 
 mod backs;
+mod density;
 mod events;
 mod lamps;
 mod mesh;

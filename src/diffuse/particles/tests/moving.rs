@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::super::options::ParticlesOptions;
+use super::super::options::{ParticleDensity, ParticlesOptions};
 use crate::gpu_tests::scenes::{box_faces, builtin, floor, lambert, place, request, view};
 use crate::gpu_tests::session::Session;
 use crate::method::{Options, Preset};
@@ -10,8 +10,9 @@ use crate::renderer::{Frame, FrameRequest, Settings, Slot, Technique, Timing};
 use crate::scene::{CameraView, Node, NodeId, Scene};
 
 fn settings(count: u32) -> Settings {
+    let (bounces, density) = (Some(3), ParticleDensity::Even);
     let particles =
-        ParticlesOptions { count, bounces: Some(3), gather: 8, ..ParticlesOptions::preset(Preset::Default) };
+        ParticlesOptions { count, bounces, density, gather: 8, ..ParticlesOptions::preset(Preset::Default) };
     Settings { particles, ..Settings::new(Technique::Particles, Preset::Default) }
 }
 
@@ -20,7 +21,7 @@ fn asked(camera: &CameraView) -> FrameRequest {
 }
 
 /// What a pass of the method counted.
-fn count(frame: &Frame, pass: &str, name: &str) -> u64 {
+pub(super) fn counted(frame: &Frame, pass: &str, name: &str) -> u64 {
     let prefix = format!("diffuse/particles/{pass}");
     let passes = frame.timings.passes.iter().filter(|row| row.full_name().starts_with(&prefix));
     passes.filter_map(|row| row.work.get(name)).sum()
@@ -44,8 +45,8 @@ pub(super) fn moves(scene: &mut Scene, camera: &CameraView, (share, most): (f64,
         step(scene, number);
         let moved = renderer.render(scene, &asked(camera)).expect("a frame");
         let whole = session.render(scene, &settings, &asked(camera));
-        let [again, all] = [&moved, &whole].map(|frame| count(frame, "link/trace", "rays"));
-        let facets = [&moved, &whole].map(|frame| count(frame, "measure/catch", "facets"));
+        let [again, all] = [&moved, &whole].map(|frame| counted(frame, "link/trace", "rays"));
+        let facets = [&moved, &whole].map(|frame| counted(frame, "measure/catch", "facets"));
         let difference = difference(&moved, &whole);
         println!("{}: {again} links of {all}, facets {facets:?}, difference {difference:.1e}", scene.name);
         assert!(again > 0 && (again as f64) < share * all as f64, "{again} links of {all}");
@@ -121,6 +122,6 @@ fn what_changes_its_shape_is_made_anew() {
     local.matrix3 *= 1.1;
     scene.set_local_transform(block, local).expect("a sound transform");
     let stretched = renderer.render(&scene, &asked(&camera)).expect("a frame");
-    assert_eq!(count(&stretched, "link/trace", "rays"), count(&first, "link/trace", "rays"));
+    assert_eq!(counted(&stretched, "link/trace", "rays"), counted(&first, "link/trace", "rays"));
     assert_eq!(difference(&stretched, &session.render(&scene, &settings, &asked(&camera))), 0.0);
 }

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::super::options::{ParticlesOptions, ParticlesReceivers};
 use super::{against_paths, count, options, settings};
-use crate::gpu_tests::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, view};
+use crate::gpu_tests::scenes::{add_light, builtin, closed_box, floor, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Slot, Timing};
 use crate::scene::{LightKind, Material, Primitive, Scene, Texture, TextureRef, Wrap};
@@ -102,4 +102,18 @@ fn normal_maps_turn_what_is_received() {
         println!("{towards}: mean {ratio:.3}, blocks {error:.3}");
         assert!((ratio - 1.0).abs() < 0.06 && error < 0.1, "{towards}: {ratio} {error}");
     }
+}
+
+/// A floor along which one looks: its pixels are rows of metres and not squares, which no region of several stands for.
+#[test]
+fn regions_are_small_where_one_looks_along_a_surface() {
+    let session = Session::open();
+    let mut scene = floor(20.0, lambert([0.5; 3]));
+    add_light(&mut scene, LightKind::Point, DVec3::new(0.0, 2.0, 0.0), DVec3::NEG_Y, [1.0; 3]);
+    let camera = view(DVec3::new(0.0, 0.2, 18.0), DVec3::new(0.0, 0.2, 0.0));
+    let asked = FrameRequest { timing: Timing::Passes, ..request([128, 96], camera, &[Slot::Diffuse]) };
+    let frame = session.render(&scene, &settings(options(1000, 0)), &asked);
+    // Depth changes by 1/y of itself from row to row, y rows below the horizon: by less than 4 % in a square of two rows from the 25th of 48 on.
+    let regions = count(&frame.timings.passes, "diffuse/particles/find/homes", "regions");
+    assert!((3000..4500).contains(&regions), "{regions} regions");
 }
