@@ -280,7 +280,7 @@ fn a_turned_room_looks_the_same() {
     let moved = CameraView { world: turn * camera.world, ..camera.clone() };
     let before = specular_of(&session, &scene, &settings, &camera);
     let after = specular_of(&session, &transformed(&scene, turn, 1.0), &settings, &moved);
-    assert_close("turned", &after, &before, 0.01, 0.02);
+    assert_close("turned", &after, &before, 0.01, 0.01);
 }
 
 #[test]
