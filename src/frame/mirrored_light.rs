@@ -32,7 +32,8 @@ impl<'a> Shining<'a> {
         (level, number): (&str, usize),
         has_first: bool,
     ) -> Shining<'a> {
-        let light = graph.buffer(&format!("{level}.{number}"), list.points.count());
+        let name = level.trim_start_matches("specular/").replace('/', ".");
+        let light = graph.buffer(&format!("{name}.{number}"), list.points.count());
         let (rays, lights) = (scene.rays(graph), scene.lights(graph));
         Shining { names: (level.to_owned(), number), list, scene, rays, lights, has_first, light }
     }

@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::path_probe::{Ask, Tracer, sphere};
+use super::invariance::transformed;
+use super::path_probe::{Ask, Tracer, sphere, turned};
 use super::probe::{Probe, probe};
 use super::scenes::{add_light, box_faces, builtin, closed_box, lambert, place, quad, request, settings_of, view};
 use super::session::Session;
@@ -268,6 +269,18 @@ fn a_glossy_room_mirrors_itself() {
         Ask { bounces, caustics, mirrors: Some(1), filter: PixelFilter::Center, ..Ask::new(SIZE, 96, camera.clone()) };
     let truth = Tracer::new(&session).trace(&scene, &ask).slot(Slot::Specular);
     assert_close("a glossy room", &specular_of(&session, &scene, &settings, &camera), &truth, 0.05, 0.1);
+}
+
+/// A map's texels lie otherwise then.
+#[test]
+fn a_turned_room_looks_the_same() {
+    let session = Session::open();
+    let (scene, camera, settings) = (room(0.2, false), in_the_room(), direct(&[]));
+    let turn = turned(1.0, DVec3::new(30.0, -20.0, 10.0));
+    let moved = CameraView { world: turn * camera.world, ..camera.clone() };
+    let before = specular_of(&session, &scene, &settings, &camera);
+    let after = specular_of(&session, &transformed(&scene, turn, 1.0), &settings, &moved);
+    assert_close("turned", &after, &before, 0.01, 0.01);
 }
 
 #[test]
