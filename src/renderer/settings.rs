@@ -159,17 +159,22 @@ impl Settings {
         Ok(piece.set(option, value)?)
     }
 
-    /// Sets the option `name` of every piece that has one; numbers as far as the piece takes them.
+    /// Sets the option `name` of every piece that has one which takes the value; numbers as far as the piece takes them.
     ///
     /// # Errors
-    /// A value that a piece does not take.
+    /// A value that no piece takes.
     pub fn set_everywhere(&mut self, name: &str, value: &str) -> Result<(), SettingsError> {
+        let (mut taken, mut refused) = (false, Ok(()));
         for piece in self.pieces_mut() {
             let Some(info) = piece.table().iter().find(|info| info.name == name) else { continue };
             let number = value.parse().map(|number| Value::from(info.kind.clamped(number)));
-            piece.set(name, number.unwrap_or_else(|_| Value::String(value.to_owned())))?;
+            match piece.set(name, number.unwrap_or_else(|_| Value::String(value.to_owned()))) {
+                Ok(()) => taken = true,
+                // Something else may have that name: paths are filtered over a pixel, points of caustics over a surface.
+                Err(error) => refused = Err(error.into()),
+            }
         }
-        Ok(())
+        if taken { Ok(()) } else { refused }
     }
 
     /// Whether every option of every piece is within its range.
@@ -241,6 +246,7 @@ impl<'de> Deserialize<'de> for Settings {
 mod tests {
     use super::super::choices::{CausticsMethod, DiffuseMethod};
     use super::*;
+    use crate::slot::PixelFilter;
 
     #[test]
     fn every_setting_can_be_set_to_its_own_value() {
@@ -252,6 +258,17 @@ mod tests {
             settings.set(&key, &value).expect("its own value is within its range");
         }
         assert_eq!(settings, before);
+    }
+
+    #[test]
+    fn one_name_may_take_other_choices_elsewhere() {
+        let mut settings = Settings::new(Technique::Path, Preset::Default);
+        let points = settings.points.clone();
+        settings.set_everywhere("filter", "box").expect("paths take it");
+        assert_eq!((settings.path.filter, settings.sppm.filter), (PixelFilter::Box, PixelFilter::Box));
+        assert_eq!(settings.points, points);
+        assert!(settings.set_everywhere("filter", "round").is_err());
+        assert_eq!(settings.points, points);
     }
 
     #[test]
