@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::{DMat3, DVec3};
 
+use super::BakeError;
 use super::atlas::Atlas;
 use super::light::Light;
-use super::materials::Look;
+use super::materials::{Look, unit};
 use crate::frame::rays::TriangleChart;
 use crate::scene::{Alpha, Instance, Primitive, Scene};
 
@@ -76,8 +77,10 @@ pub(super) fn groups(
     light: &Light,
 ) -> BTreeMap<Look, Group> {
     let primitive = primitive_of(scene, instance);
-    let kept = Look::Kept(primitive.material);
     let material = &scene.materials()[primitive.material.0];
+    // The thickness of glass is in the units of its mesh.
+    let scale = if material.thickness > 0.0 { instance.world.matrix3.determinant().abs().cbrt() as f32 } else { 1.0 };
+    let kept = Look::Kept { id: primitive.material, scale: scale.to_bits() };
     let cut_by = (material.alpha != Alpha::Opaque).then_some(primitive.material);
     let order = if instance.flips_winding { [0, 2, 1] } else { [0, 1, 2] };
     let mut groups: BTreeMap<Look, Group> = BTreeMap::new();
@@ -86,11 +89,11 @@ pub(super) fn groups(
         let [a, b, c] =
             corners.map(|corner| instance.world.transform_vector3(wide(primitive.positions[corner as usize])));
         let front = (b - a).cross(c - a);
-        // Without an area it shows nothing; beyond the range of floats no viewer finds it.
+        // Without an area it shows nothing.
         if front == DVec3::ZERO || !front.is_finite() {
             continue;
         }
-        let Some(chart) = chart else {
+        let Some(chart) = chart.as_ref().filter(|chart| !light.kept[chart.surface as usize]) else {
             groups.entry(kept).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
             continue;
         };
@@ -118,7 +121,16 @@ pub(super) fn primitive_of<'a>(scene: &'a Scene, instance: &Instance) -> &'a Pri
 
 impl Group {
     /// What the file needs of the vertices.
-    pub(super) fn arrays(&self, scene: &Scene, instance: &Instance, look: Look, place: Place) -> Arrays {
+    ///
+    /// # Errors
+    /// They lie beyond the range of floats.
+    pub(super) fn arrays(
+        &self,
+        scene: &Scene,
+        instance: &Instance,
+        look: Look,
+        place: Place,
+    ) -> Result<Arrays, BakeError> {
         let primitive = primitive_of(scene, instance);
         let material = &scene.materials()[primitive.material.0];
         let positions = self.vertices.iter().map(|vertex| {
@@ -126,35 +138,37 @@ impl Group {
             let behind = vertex.front.normalize_or_zero() * (BEHIND * place.radius);
             (world - behind - place.origin).as_vec3().to_array()
         });
-        let positions = positions.collect();
+        let positions: Vec<[f32; 3]> = positions.collect();
+        if !positions.as_flattened().iter().all(|at| at.is_finite()) {
+            return Err(BakeError::Beyond { scene: scene.name.clone() });
+        }
         let of = |set: usize| -> Option<Vec<[f32; 2]>> {
             let all = primitive.texcoords[set].as_ref()?;
             Some(self.vertices.iter().map(|vertex| finite(all[vertex.source as usize])).collect())
         };
         let colors = primitive.colors.as_ref().filter(|_| !matches!(look, Look::Baked { cut_by: None, .. }));
-        let colors = colors.map(|all| {
-            self.vertices.iter().map(|vertex| all[vertex.source as usize].map(|it| it.clamp(0.0, 1.0))).collect()
-        });
-        match look {
-            Look::Kept(_) => {
+        let colors =
+            colors.map(|all| self.vertices.iter().map(|vertex| all[vertex.source as usize].map(unit)).collect());
+        Ok(match look {
+            Look::Kept { .. } => {
                 let used = |set: u32| material.textures().any(|texture| texture.texcoord == set);
-                let second = of(1).filter(|_| used(1));
-                // The format wants a first set before a second one.
-                let first = of(0).filter(|_| used(0) || second.is_some());
-                let first = first.or_else(|| second.as_ref().map(|second| vec![[0.0; 2]; second.len()]));
+                // Textures without coordinates are read at their zero, and the format wants a first set before a second one.
+                let set = |set: usize| of(set).unwrap_or_else(|| vec![[0.0; 2]; self.vertices.len()]);
+                let first = (used(0) || used(1)).then(|| set(0));
+                let second = used(1).then(|| set(1));
                 Arrays { positions, normals: self.normals(primitive, instance), texcoords: [first, second], colors }
             }
             Look::Baked { cut_by, .. } => {
                 let baked: Vec<[f32; 2]> = self.vertices.iter().map(|vertex| vertex.coordinates).collect();
                 let cutting = material.base_color_texture.filter(|_| cut_by.is_some());
-                let own = cutting.and_then(|texture| {
-                    let all = of(texture.texcoord as usize)?;
-                    Some(all.into_iter().map(|at| finite(texture.apply(at))).collect())
+                let own = cutting.map(|texture| {
+                    let all = of(texture.texcoord as usize).unwrap_or_else(|| vec![[0.0; 2]; baked.len()]);
+                    all.into_iter().map(|at| finite(texture.apply(at))).collect()
                 });
                 let own = own.or_else(|| of(0)).unwrap_or_else(|| baked.clone());
                 Arrays { positions, normals: None, texcoords: [Some(own), Some(baked)], colors }
             }
-        }
+        })
     }
 
     /// By the inverse transpose.

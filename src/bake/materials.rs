@@ -13,7 +13,11 @@ use crate::scene::{Alpha, Material, MaterialId, Scene, TextureRef};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Look {
     /// The scene's own material.
-    Kept(MaterialId),
+    Kept {
+        id: MaterialId,
+        /// How much longer things are in the scene than in their mesh, where that matters to the material: a float's bits.
+        scale: u32,
+    },
     /// Baked light.
     Baked {
         /// Of the power of two that the atlas is multiplied by; `None`: black.
@@ -46,7 +50,7 @@ impl<'a> Materials<'a> {
             return Ok(*known);
         }
         let material = match look {
-            Look::Kept(id) => self.kept(glb, id)?,
+            Look::Kept { id, scale } => self.kept(glb, id, f32::from_bits(scale))?,
             Look::Baked { exponent, cut_by } => self.baked(glb, exponent, cut_by)?,
         };
         self.written.push(material);
@@ -77,7 +81,7 @@ impl<'a> Materials<'a> {
             let of = &self.scene.materials()[id.0];
             material["name"] = format!("{name}, cut out as {}", of.name).into();
             cut_out(&mut material, of);
-            material["pbrMetallicRoughness"]["baseColorFactor"][3] = of.base_color[3].into();
+            material["pbrMetallicRoughness"]["baseColorFactor"][3] = unit(of.base_color[3]).into();
             if let Some(texture) = of.base_color_texture {
                 let index = self.textures.number(glb, self.scene, texture.texture, Channels::Alpha)?;
                 // Its coordinates come transformed as set 0.
@@ -97,16 +101,16 @@ impl<'a> Materials<'a> {
         Ok(info)
     }
 
-    fn kept(&mut self, glb: &mut Glb, id: MaterialId) -> Result<Value, BakeError> {
+    fn kept(&mut self, glb: &mut Glb, id: MaterialId, scale: f32) -> Result<Value, BakeError> {
         let scene = self.scene;
         let material = &scene.materials()[id.0];
         let mut written = json!({
             "name": material.name,
             "doubleSided": material.double_sided,
             "pbrMetallicRoughness": {
-                "baseColorFactor": material.base_color,
-                "metallicFactor": material.metallic,
-                "roughnessFactor": material.roughness.min(1.0),
+                "baseColorFactor": material.base_color.map(unit),
+                "metallicFactor": unit(material.metallic),
+                "roughnessFactor": unit(material.roughness),
             },
         });
         cut_out(&mut written, material);
@@ -120,19 +124,28 @@ impl<'a> Materials<'a> {
             }
         }
         if material.ior != Material::default().ior {
-            self.extend(&mut written, "KHR_materials_ior", json!({ "ior": material.ior }));
+            self.extend(
+                &mut written,
+                "KHR_materials_ior",
+                json!({ "ior": if material.ior > 0.0 { material.ior.max(1.0) } else { 0.0 } }),
+            );
         }
         let Material { specular, specular_color, transmission, .. } = *material;
         if specular != 1.0 || specular_color != [1.0; 3] {
-            let layer = json!({ "specularFactor": specular.min(1.0), "specularColorFactor": specular_color });
+            let layer = json!({ "specularFactor": unit(specular), "specularColorFactor": specular_color });
             self.extend(&mut written, "KHR_materials_specular", layer);
         }
         if transmission > 0.0 {
-            self.extend(&mut written, "KHR_materials_transmission", json!({ "transmissionFactor": transmission }));
+            self.extend(
+                &mut written,
+                "KHR_materials_transmission",
+                json!({ "transmissionFactor": unit(transmission) }),
+            );
         }
         if material.thickness > 0.0 {
-            let mut volume =
-                json!({ "thicknessFactor": material.thickness, "attenuationColor": material.attenuation_color });
+            let thickness = (material.thickness * scale).min(f32::MAX);
+            let attenuation = material.attenuation_color.map(unit);
+            let mut volume = json!({ "thicknessFactor": thickness, "attenuationColor": attenuation });
             if material.attenuation_distance.is_finite() {
                 volume["attenuationDistance"] = material.attenuation_distance.into();
             }
@@ -180,8 +193,13 @@ impl<'a> Materials<'a> {
 fn cut_out(written: &mut Value, material: &Material) {
     if let Alpha::Mask { cutoff } = material.alpha {
         written["alphaMode"] = "MASK".into();
-        written["alphaCutoff"] = cutoff.into();
+        written["alphaCutoff"] = cutoff.clamp(0.0, f32::MAX).into();
     }
+}
+
+/// The format takes most factors from 0 to 1 alone, and the scene's may be greater.
+pub(super) fn unit(factor: f32) -> f32 {
+    if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
 /// A matrix as offset, rotation and scale: the extension has no shear, and whatever was read from it has none.
