@@ -35,13 +35,20 @@ fn two_files_appear_and_replace_older_ones() {
     let (glb, exr) = (folder.join("a.b.glb"), folder.join("a.b.irradiance.exr"));
     fs::write(&glb, "old").expect("the test's own folder");
     for detail in ["1", "2"] {
-        let arguments = ["cornell-point", "-o", text(&glb), "--detail", detail, "--validation", "sync"];
+        let lamp = "point:0,1,0,2";
+        let arguments =
+            ["cornell-point", "-o", text(&glb), "--detail", detail, "--validation", "sync", "--light", lamp];
         let output = irradia(&[&arguments[..], &COARSE].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert!(stderr(&output).contains("a.b.irradiance.exr") && output.stdout.is_empty(), "{}", stderr(&output));
         assert_eq!(names_in(&folder), ["a.b.glb", "a.b.irradiance.exr"]);
         let read = read_exr(&exr).expect("an EXR of ours");
         assert_eq!((&*read.attributes["quantity"], &*read.attributes["detail"]), ("irradiance, W/m²", detail));
+        let said = |name: &str, word: &str| assert!(read.attributes[name].contains(word), "{:?}", read.attributes);
+        said("settings", "\"settle\":\"always\"");
+        said("lights", lamp);
+        said("sky", "[0.0,0.0,0.0]");
+        assert!(["device", "driver", "api"].iter().all(|name| !read.attributes[*name].is_empty()));
         assert_eq!(read.slots.keys().copied().collect::<Vec<_>>(), [Slot::Direct, Slot::Diffuse, Slot::Caustics]);
         let scene = Scene::open(text(&glb)).expect("a scene");
         assert_eq!([scene.textures()[0].width, scene.textures()[0].height], read.image.size);
@@ -75,7 +82,8 @@ fn what_cannot_be_baked_is_said_in_one_sentence() {
         assert!(words.iter().all(|word| message.contains(word)), "{arguments:?}: {message}");
         assert_eq!(names_in(&folder), ["own.glb"], "{arguments:?}");
     }
-    let wrong: [(&[&str], &str); 4] = [
+    let wrong: [(&[&str], &str); 5] = [
+        (&["cornell-point", "-o", text(&glb), "--set", "lightmaps.show=received"], "change nothing"),
         (&["cornell-point", "-o", "a.gltf"], ".glb"),
         (&["cornell-point"], "--output"),
         (&["cornell-point", "-o", text(&glb), "--set", "rsm.vpls=64"], "lightmaps"),
