@@ -9,9 +9,12 @@ use super::fill::fill;
 use crate::frame::rays::TriangleChart;
 use crate::scene::{Appearance, Instance, MaterialId, PointLook, Scene};
 
-/// Points on a texel's area, and along a triangle's edges at least and at most.
-const POINTS: f32 = 36.0;
-const EDGE: (f32, f32) = (4.0, 2048.0);
+/// Points along a texel's side.
+const STEPS: f32 = 6.0;
+/// Triangles with fewer points have so many parts along each edge.
+const LEAST: u32 = 4;
+/// The same of those that look alike everywhere, at most: texels between take what their neighbours have.
+const EVEN: f32 = 2048.0;
 
 /// Of one texel: albedo, and radiance that is emitted on the front.
 pub(super) type Look = [f32; 6];
@@ -93,17 +96,13 @@ fn looks_of_instance(
     sums.into_iter().map(|(surface, found)| (surface, looks(found))).collect()
 }
 
-/// Small equal parts of the triangle go to the texels that their middles are nearest to.
+/// Points of an even grid, or the middles of small equal parts where it meets few, go to the texels that they are nearest to.
 fn add_triangle(appearance: &Appearance<'_>, vertices: [u32; 3], chart: &TriangleChart, sums: &mut Sums) {
     let [a, b, c] = chart.corners;
-    let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+    let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let area = 0.5 * twice.abs();
     let even = appearance.is_even().then(|| appearance.at(vertices, [1.0 / 3.0; 3]));
-    let points = if even.is_some() { POINTS / 4.0 } else { POINTS };
-    let parts = (points * area).sqrt().ceil().clamp(EDGE.0, EDGE.1) as u32;
-    let weight = (area / (parts * parts) as f32).max(f32::MIN_POSITIVE);
-    let mut take = |row: u32, column: u32, third: f32| {
-        let [u, v] = [column, row].map(|step| (step as f32 + third) / parts as f32);
-        let weights = [1.0 - u - v, u, v];
+    let mut take = |weights: [f32; 3], weight: f32| {
         let look = even.unwrap_or_else(|| appearance.at(vertices, weights));
         let Some(PointLook { albedo, emitted, diffuse }) = look else { return };
         let index = |axis: usize| {
@@ -119,6 +118,22 @@ fn add_triangle(appearance: &Appearance<'_>, vertices: [u32; 3], chart: &Triangl
             *sum += weight * value;
         }
     };
+    let mut points = 0;
+    on_grid(chart.corners, |_| points += 1);
+    if even.is_none() && points >= LEAST * LEAST {
+        on_grid(chart.corners, |[x, y]| {
+            let v = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / twice;
+            let w = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / twice;
+            take([1.0 - v - w, v, w], 1.0 / (STEPS * STEPS));
+        });
+        return;
+    }
+    let parts = (0.5 * STEPS * area.sqrt()).ceil().clamp(LEAST as f32, EVEN) as u32;
+    let weight = (area / (parts * parts) as f32).max(f32::MIN_POSITIVE);
+    let mut take = |row: u32, column: u32, third: f32| {
+        let [u, v] = [column, row].map(|step| (step as f32 + third) / parts as f32);
+        take([1.0 - u - v, u, v], weight);
+    };
     for row in 0..parts {
         for column in 0..parts - row {
             take(row, column, 1.0 / 3.0);
@@ -129,10 +144,68 @@ fn add_triangle(appearance: &Appearance<'_>, vertices: [u32; 3], chart: &Triangl
     }
 }
 
+/// The points within a triangle of a grid that has as many on each texel.
+fn on_grid(corners: [[f32; 2]; 3], mut take: impl FnMut([f32; 2])) {
+    // Those from one place to another, in steps.
+    let steps = |from: f32, to: f32| (STEPS * from - 0.5).ceil() as i64..=(STEPS * to - 0.5).floor() as i64;
+    let place = |step: i64| (step as f32 + 0.5) / STEPS;
+    let edges = [0, 1, 2].map(|corner| [corners[corner], corners[(corner + 1) % 3]]);
+    let ends = |values: &mut dyn Iterator<Item = f32>| {
+        values.fold([f32::INFINITY, f32::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+    };
+    let [top, bottom] = ends(&mut corners.iter().map(|corner| corner[1]));
+    for row in steps(top, bottom) {
+        let y = place(row);
+        let crossed = edges.iter().filter(|[from, to]| (from[1] <= y) != (to[1] <= y));
+        let mut crossings = crossed.map(|[from, to]| from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]));
+        let [left, right] = ends(&mut crossings);
+        if left <= right {
+            steps(left, right).for_each(|column| take([place(column), y]));
+        }
+    }
+}
+
 fn means(sums: &[Sum], size: [u32; 2]) -> Vec<Look> {
     let mut known: Vec<bool> = sums.iter().map(|sum| sum.weight > 0.0).collect();
     let mean = |sum: &Sum| if sum.weight > 0.0 { sum.look.map(|it| it / sum.weight) } else { Look::default() };
     let mut looks: Vec<Look> = sums.iter().map(mean).collect();
     fill(&mut looks, &mut known, size);
     looks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, Mesh, Node, Primitive, Texture, TextureRef, Wrap};
+
+    /// A strip of 200 by 2 texels with stripes across, whose triangles are long and thin.
+    #[test]
+    fn stripes_across_a_strip_stay_where_they_are() {
+        let mut scene = Scene::empty("strip");
+        let rgba8: Vec<u8> = (0..40_u8).flat_map(|column| [255 * (column % 2), 0, 0, 255]).collect();
+        let (width, height, wrap) = (40, 1, [Wrap::Clamp; 2]);
+        let texture = Texture { name: String::new(), width, height, rgba8, wrap, nearest: true, srgb: true };
+        let texture = Some(TextureRef::new(scene.add_texture(texture).expect("sound")));
+        let material = Material { base_color_texture: texture, specular: 0.0, ..Material::default() };
+        let material = scene.add_material(material).expect("sound");
+        let positions = vec![[0.0; 3], [199.0, 0.0, 0.0], [199.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let texcoords = [Some(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), None];
+        let indices = vec![0, 1, 2, 0, 2, 3];
+        let primitives = vec![Primitive { positions, texcoords, indices, material, ..Primitive::default() }];
+        let mesh = scene.add_mesh(Mesh { name: String::new(), primitives }).expect("sound");
+        scene.add_node(Node { mesh: Some(mesh), ..Node::default() }).expect("sound");
+        let chart = |corners| Some(TriangleChart { corners, firsts: [Some(0), None], size: [200, 2], surface: 0 });
+        let charts = [chart([[0.0, 0.0], [199.0, 0.0], [199.0, 1.0]]), chart([[0.0, 0.0], [199.0, 1.0], [0.0, 1.0]])];
+        let looks = &looks_of_instance(&scene, &scene.instances()[0], &charts)[&0];
+        assert!((looks.diffuse - 1.0).abs() < 1e-6);
+        for (number, texel) in looks.texels.iter().enumerate() {
+            let middle = (number % 200) as f32;
+            // As much of the texel as is on red stripes.
+            let points = (0..100).map(|point| (middle - 0.495 + 0.01 * point as f32) / 199.0);
+            let of: Vec<f32> =
+                points.filter(|at| (0.0..1.0).contains(at)).map(|at| ((at * 40.0) as u32 % 2) as f32).collect();
+            let expected = of.iter().sum::<f32>() / of.len() as f32;
+            assert!((texel[0] - expected).abs() < 0.12, "{number}: {} in place of {expected}", texel[0]);
+        }
+    }
 }
