@@ -28,14 +28,14 @@ pub(super) fn warn_of_looks(scene: &Scene, charts: &[Option<TriangleChart>], loo
         looks.iter().filter(parted).map(|looks| scene.materials()[looks.material.0].name.as_str()).collect();
     if !parted.is_empty() {
         tracing::warn!(
-            "{} are partly metal or glass: surfaces that are so for the most part keep their material without its diffuse light, and the others have that light alone",
+            "there is metal or glass beside diffuse light in {}: surfaces that are metal or glass for the most part keep their material without its diffuse light, and the others have that light alone",
             listed(&parted)
         );
     }
     let unlit = unlit(scene, charts);
     if !unlit.is_empty() {
         tracing::warn!(
-            "{} have surfaces too small or too far away for light maps: they keep their materials, and are black without other lights",
+            "surfaces of {} are too small or too far away for light maps: they keep their material, and are black without other lights",
             listed(&unlit)
         );
     }

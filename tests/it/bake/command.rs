@@ -95,3 +95,21 @@ fn what_cannot_be_baked_is_said_in_one_sentence() {
         assert!(stderr(&output).contains(word), "{arguments:?}: {}", stderr(&output));
     }
 }
+
+/// Of two files that belong together one is not replaced alone.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_both_files() {
+    let folder = folder("full");
+    let both = [folder.join("a.glb"), folder.join("a.irradiance.exr")];
+    for (full, stays) in [(0, 1), (1, 0)] {
+        both.iter().for_each(|path| drop(fs::remove_file(path)));
+        std::os::unix::fs::symlink("/dev/full", &both[full]).expect("the test's own folder");
+        fs::write(&both[stays], "old").expect("the test's own folder");
+        let output = irradia(&[&["cornell-point", "-o", text(&both[0]), "--detail", "1", "-q"][..], &COARSE].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
+        assert!(fs::read(&both[stays]).expect("there") == b"old", "{full}");
+        assert_eq!(names_in(&folder), ["a.glb", "a.irradiance.exr"]);
+    }
+}
