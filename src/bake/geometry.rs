@@ -80,7 +80,8 @@ pub(super) fn groups(
     let material = &scene.materials()[primitive.material.0];
     // The thickness of glass is in the units of its mesh.
     let scale = if material.thickness > 0.0 { instance.world.matrix3.determinant().abs().cbrt() as f32 } else { 1.0 };
-    let kept = Look::Kept { id: primitive.material, scale: scale.to_bits() };
+    let kept = |light| Look::Kept { id: primitive.material, scale: scale.to_bits(), light };
+    let has_room = material.textures().all(|texture| texture.texcoord == 0);
     let cut_by = (material.alpha != Alpha::Opaque).then_some(primitive.material);
     let order = if instance.flips_winding { [0, 2, 1] } else { [0, 1, 2] };
     let mut groups: BTreeMap<Look, Group> = BTreeMap::new();
@@ -93,10 +94,19 @@ pub(super) fn groups(
         if front == DVec3::ZERO || !front.is_finite() {
             continue;
         }
-        let Some(chart) = chart.as_ref().filter(|chart| !light.kept[chart.surface as usize]) else {
-            groups.entry(kept).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
+        let Some(chart) = chart else {
+            groups.entry(kept(None)).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
             continue;
         };
+        if light.kept[chart.surface as usize] {
+            // One side's light can be added where the second set of coordinates is free.
+            let sheet = atlas.sheet(chart.surface, 0).filter(|_| has_room && chart.firsts[1].is_none());
+            let sheet = sheet.filter(|&sheet| light.exponents[sheet].is_some());
+            let coordinates = chart.corners.map(|place| sheet.map_or([0.0; 2], |it| atlas.coordinates(it, place)));
+            let look = kept(sheet.and_then(|sheet| light.exponents[sheet]));
+            groups.entry(look).or_default().add(corners, sheet, coordinates, DVec3::ZERO);
+            continue;
+        }
         for side in 0..2 {
             let Some(sheet) = atlas.sheet(chart.surface, side).filter(|_| chart.firsts[side].is_some()) else {
                 continue;
@@ -150,12 +160,13 @@ impl Group {
         let colors =
             colors.map(|all| self.vertices.iter().map(|vertex| all[vertex.source as usize].map(unit)).collect());
         Ok(match look {
-            Look::Kept { .. } => {
+            Look::Kept { light, .. } => {
                 let used = |set: u32| material.textures().any(|texture| texture.texcoord == set);
                 // Textures without coordinates are read at their zero, and the format wants a first set before a second one.
                 let set = |set: usize| of(set).unwrap_or_else(|| vec![[0.0; 2]; self.vertices.len()]);
-                let first = (used(0) || used(1)).then(|| set(0));
-                let second = used(1).then(|| set(1));
+                let lit = light.map(|_| self.vertices.iter().map(|vertex| vertex.coordinates).collect());
+                let second = lit.or_else(|| used(1).then(|| set(1)));
+                let first = (used(0) || second.is_some()).then(|| set(0));
                 Arrays { positions, normals: self.normals(primitive, instance), texcoords: [first, second], colors }
             }
             Look::Baked { cut_by, .. } => {

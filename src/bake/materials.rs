@@ -17,6 +17,8 @@ pub(super) enum Look {
         id: MaterialId,
         /// How much longer things are in the scene than in their mesh, where that matters to the material: a float's bits.
         scale: u32,
+        /// Of what the diffuse lobe reflects, as below; `None`: nothing is added.
+        light: Option<i32>,
     },
     /// Baked light.
     Baked {
@@ -50,7 +52,7 @@ impl<'a> Materials<'a> {
             return Ok(*known);
         }
         let material = match look {
-            Look::Kept { id, scale } => self.kept(glb, id, f32::from_bits(scale))?,
+            Look::Kept { id, scale, light } => self.kept(glb, id, f32::from_bits(scale), light)?,
             Look::Baked { exponent, cut_by } => self.baked(glb, exponent, cut_by)?,
         };
         self.written.push(material);
@@ -63,6 +65,14 @@ impl<'a> Materials<'a> {
         material["extensions"][name] = extension;
     }
 
+    /// What the atlas says.
+    fn emit(&mut self, material: &mut Value, exponent: i32) {
+        material["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
+        material["emissiveTexture"] = json!({ "index": self.atlas, "texCoord": 1 });
+        let strength = json!({ "emissiveStrength": 2.0_f64.powi(exponent) });
+        self.extend(material, "KHR_materials_emissive_strength", strength);
+    }
+
     /// Nothing is reflected: neither lights that a viewer adds nor what surrounds it change what shows.
     fn baked(&mut self, glb: &mut Glb, exponent: Option<i32>, cut_by: Option<MaterialId>) -> Result<Value, BakeError> {
         let name = exponent.map_or_else(|| "black".to_owned(), |exponent| format!("light times 2^{exponent}"));
@@ -71,10 +81,7 @@ impl<'a> Materials<'a> {
             "pbrMetallicRoughness": { "baseColorFactor": [0.0, 0.0, 0.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0 },
         });
         if let Some(exponent) = exponent {
-            material["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
-            material["emissiveTexture"] = json!({ "index": self.atlas, "texCoord": 1 });
-            let strength = json!({ "emissiveStrength": 2.0_f64.powi(exponent) });
-            self.extend(&mut material, "KHR_materials_emissive_strength", strength);
+            self.emit(&mut material, exponent);
         }
         self.extend(&mut material, "KHR_materials_specular", json!({ "specularFactor": 0.0 }));
         if let Some(id) = cut_by {
@@ -101,7 +108,7 @@ impl<'a> Materials<'a> {
         Ok(info)
     }
 
-    fn kept(&mut self, glb: &mut Glb, id: MaterialId, scale: f32) -> Result<Value, BakeError> {
+    fn kept(&mut self, glb: &mut Glb, id: MaterialId, scale: f32, light: Option<i32>) -> Result<Value, BakeError> {
         let scene = self.scene;
         let material = &scene.materials()[id.0];
         let mut written = json!({
@@ -155,6 +162,9 @@ impl<'a> Materials<'a> {
             self.extend(&mut written, "KHR_materials_unlit", json!({}));
         }
         self.add_textures(glb, material, &mut written)?;
+        if let Some(exponent) = light {
+            self.emit(&mut written, exponent);
+        }
         Ok(written)
     }
 

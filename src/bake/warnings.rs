@@ -28,7 +28,7 @@ pub(super) fn warn_of_looks(scene: &Scene, charts: &[Option<TriangleChart>], loo
         looks.iter().filter(parted).map(|looks| scene.materials()[looks.material.0].name.as_str()).collect();
     if !parted.is_empty() {
         tracing::warn!(
-            "there is metal or glass beside diffuse light in {}: surfaces that are metal or glass for the most part keep their material without its diffuse light, and the others have that light alone",
+            "there is metal or glass beside diffuse light in {}: surfaces that are metal or glass for the most part keep their material, and the others have their diffuse light alone",
             listed(&parted)
         );
     }
