@@ -14,6 +14,9 @@ use crate::scene::{Alpha, Instance, Primitive, Scene};
 /// How far backs lie behind fronts, over the scene's radius: some viewers draw both.
 const BEHIND: f64 = 1e-5;
 
+/// The exponent of what is black.
+const LEAST: i32 = -126;
+
 /// A vertex of the baked file.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
@@ -98,20 +101,18 @@ pub(super) fn groups(
             groups.entry(kept(None)).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
             continue;
         };
-        if light.kept[chart.surface as usize] {
-            // One side's light can be added where the second set of coordinates is free.
-            let sheet = atlas.sheet(chart.surface, 0).filter(|_| has_room && chart.firsts[1].is_none());
-            let sheet = sheet.filter(|&sheet| light.exponents[sheet].is_some());
-            let coordinates = chart.corners.map(|place| sheet.map_or([0.0; 2], |it| atlas.coordinates(it, place)));
-            let look = kept(sheet.and_then(|sheet| light.exponents[sheet]));
-            groups.entry(look).or_default().add(corners, sheet, coordinates, DVec3::ZERO);
+        let keeps = light.kept[chart.surface as usize];
+        // Light can be added where the second set of coordinates is free.
+        if keeps && !has_room {
+            groups.entry(kept(None)).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
             continue;
         }
         for side in 0..2 {
             let Some(sheet) = atlas.sheet(chart.surface, side).filter(|_| chart.firsts[side].is_some()) else {
                 continue;
             };
-            let look = Look::Baked { exponent: light.exponents[sheet], cut_by };
+            let exponent = light.exponents[sheet];
+            let look = if keeps { kept(Some(exponent.unwrap_or(LEAST))) } else { Look::Baked { exponent, cut_by } };
             let coordinates = chart.corners.map(|place| atlas.coordinates(sheet, place));
             let group = groups.entry(look).or_default();
             if side == 0 {
@@ -190,6 +191,7 @@ impl Group {
         let side = if instance.flips_winding { -1.0 } else { 1.0 };
         let turned = |vertex: &Vertex| {
             let normal = cofactors * wide(all[vertex.source as usize]) * side;
+            let normal = if vertex.front == DVec3::ZERO { normal } else { -normal };
             normal.normalize_or(DVec3::Y).as_vec3().normalize_or(glam::Vec3::Y).to_array()
         };
         Some(self.vertices.iter().map(turned).collect())

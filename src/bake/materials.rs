@@ -17,7 +17,7 @@ pub(super) enum Look {
         id: MaterialId,
         /// How much longer things are in the scene than in their mesh, where that matters to the material: a float's bits.
         scale: u32,
-        /// Of what the diffuse lobe reflects, as below; `None`: nothing is added.
+        /// Of what the diffuse lobe of one side reflects, as below; `None`: nothing is added.
         light: Option<i32>,
     },
     /// Baked light.
@@ -113,7 +113,7 @@ impl<'a> Materials<'a> {
         let material = &scene.materials()[id.0];
         let mut written = json!({
             "name": material.name,
-            "doubleSided": material.double_sided,
+            "doubleSided": material.double_sided && light.is_none(),
             "pbrMetallicRoughness": {
                 "baseColorFactor": material.base_color.map(unit),
                 "metallicFactor": unit(material.metallic),

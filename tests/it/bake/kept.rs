@@ -136,11 +136,16 @@ fn textures_have_coordinates() {
 fn metal_emits_its_diffuse_light() {
     let context = context();
     let mut scene = Scene::empty("tiles");
-    add_square(&mut scene, [1.0, 0.0], named("tiles", Material { metallic: 0.75, ..lambert([0.8; 3]) }));
+    add_square(
+        &mut scene,
+        [1.0, 0.0],
+        named("tiles", Material { metallic: 0.75, double_sided: true, ..lambert([0.8; 3]) }),
+    );
     add_point_light(&mut scene, DVec3::new(0.0, 2.0, 0.0), 8.0);
     let (_, loaded) = baked(&context, &scene, &options(2000));
     let tiles = &loaded.materials()[0];
     assert_eq!((&*tiles.name, tiles.metallic), ("tiles", 0.75));
+    assert_eq!(loaded.facts().triangles, 2 * scene.facts().triangles);
     let camera = view(DVec3::new(0.0, 0.4, 0.0), DVec3::ZERO);
     let found = shown(&context, &loaded, Some(&camera))[36 * 96 + 48][0];
     // The metal reflects 0.6 of what comes, and the rest of it meets the other part.
