@@ -16,7 +16,7 @@ use crate::scene::{Extent, Instance, Scene};
 /// The bytes of the file.
 ///
 /// # Errors
-/// It is too long, or an image cannot be encoded.
+/// It is too long, it has vertices beyond the range of floats, or an image cannot be encoded.
 pub(super) fn write(
     scene: &Scene,
     charts: &[Option<TriangleChart>],
@@ -37,7 +37,8 @@ pub(super) fn write(
             let end = start + primitive_of(scene, instance).triangle_count();
             for (look, group) in groups(scene, instance, &charts[start..end], atlas, light) {
                 let material = materials.number(&mut glb, look)?;
-                primitives.push(primitive(&mut glb, &group, &group.arrays(scene, instance, look, place), material));
+                let arrays = group.arrays(scene, instance, look, place)?;
+                primitives.push(primitive(&mut glb, &group, &arrays, material));
             }
             start = end;
         }
@@ -104,4 +105,44 @@ fn name_of(scene: &Scene, instance: &Instance) -> String {
     let node = &scene.nodes()[instance.node.0].name;
     let mesh = &scene.meshes()[instance.mesh.0].name;
     [node, mesh].into_iter().find(|name| !name.is_empty()).cloned().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use glam::{DAffine3, DVec3};
+
+    use super::*;
+    use crate::image::ColorImage;
+    use crate::scene::{Material, Mesh, Node, Primitive};
+
+    /// A mesh without light maps, at another scale.
+    fn written(scale: f64) -> Result<Vec<u8>, BakeError> {
+        let mut scene = Scene::empty("large");
+        let material = scene.add_material(Material::default()).expect("sound");
+        let positions = vec![[0.0; 3], [1e10, 0.0, 0.0], [0.0, 1e10, 0.0]];
+        let primitives = vec![Primitive { positions, indices: vec![0, 1, 2], material, ..Primitive::default() }];
+        let mesh = scene.add_mesh(Mesh { name: String::new(), primitives }).expect("sound");
+        let local = DAffine3::from_scale(DVec3::splat(scale));
+        scene.add_node(Node { mesh: Some(mesh), local, ..Node::default() }).expect("sound");
+        let atlas = Atlas::new(&[None])?;
+        let texel_count = (atlas.size[0] * atlas.size[1]) as usize;
+        let light = Light {
+            irradiance: ColorImage::black(atlas.size),
+            parts: BTreeMap::new(),
+            emissive: vec![[0; 3]; texel_count],
+            kept: Vec::new(),
+            exponents: Vec::new(),
+        };
+        write(&scene, &[None], &atlas, &light)
+    }
+
+    /// JSON has no infinity.
+    #[test]
+    fn what_floats_do_not_reach_is_refused() {
+        assert!(written(1e20).is_ok());
+        let message = written(1e30).expect_err("floats end at 3e38").to_string();
+        assert!(message.contains("large reaches farther"), "{message}");
+    }
 }

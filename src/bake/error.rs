@@ -34,6 +34,14 @@ pub enum BakeError {
         /// A side.
         most: u32,
     },
+    /// glTF has vertices in floats.
+    #[error(
+        "{scene} reaches farther than a .glb can say, which is 3e38 m; leave out what lies as far away, or scale the scene"
+    )]
+    Beyond {
+        /// The scene's name.
+        scene: String,
+    },
     /// A `.glb` cannot hold as much.
     #[error(
         "the baked scene has {0} bytes, more than a .glb can hold; take larger texels with --texel, or bake a part of the scene"

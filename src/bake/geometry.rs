@@ -4,14 +4,18 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::{DMat3, DVec3};
 
+use super::BakeError;
 use super::atlas::Atlas;
 use super::light::Light;
-use super::materials::Look;
+use super::materials::{Look, unit};
 use crate::frame::rays::TriangleChart;
 use crate::scene::{Alpha, Instance, Primitive, Scene};
 
 /// How far backs lie behind fronts, over the scene's radius: some viewers draw both.
 const BEHIND: f64 = 1e-5;
+
+/// The exponent of what is black.
+const LEAST: i32 = -126;
 
 /// A vertex of the baked file.
 #[derive(Clone, Copy, Debug)]
@@ -76,8 +80,11 @@ pub(super) fn groups(
     light: &Light,
 ) -> BTreeMap<Look, Group> {
     let primitive = primitive_of(scene, instance);
-    let kept = Look::Kept(primitive.material);
     let material = &scene.materials()[primitive.material.0];
+    // The thickness of glass is in the units of its mesh.
+    let scale = if material.thickness > 0.0 { instance.world.matrix3.determinant().abs().cbrt() as f32 } else { 1.0 };
+    let kept = |light| Look::Kept { id: primitive.material, scale: scale.to_bits(), light };
+    let has_room = material.textures().all(|texture| texture.texcoord == 0);
     let cut_by = (material.alpha != Alpha::Opaque).then_some(primitive.material);
     let order = if instance.flips_winding { [0, 2, 1] } else { [0, 1, 2] };
     let mut groups: BTreeMap<Look, Group> = BTreeMap::new();
@@ -86,19 +93,26 @@ pub(super) fn groups(
         let [a, b, c] =
             corners.map(|corner| instance.world.transform_vector3(wide(primitive.positions[corner as usize])));
         let front = (b - a).cross(c - a);
-        // Without an area it shows nothing; beyond the range of floats no viewer finds it.
+        // Without an area it shows nothing.
         if front == DVec3::ZERO || !front.is_finite() {
             continue;
         }
         let Some(chart) = chart else {
-            groups.entry(kept).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
+            groups.entry(kept(None)).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
             continue;
         };
+        let keeps = light.kept[chart.surface as usize];
+        // Light can be added where the second set of coordinates is free.
+        if keeps && !has_room {
+            groups.entry(kept(None)).or_default().add(corners, None, [[0.0; 2]; 3], DVec3::ZERO);
+            continue;
+        }
         for side in 0..2 {
             let Some(sheet) = atlas.sheet(chart.surface, side).filter(|_| chart.firsts[side].is_some()) else {
                 continue;
             };
-            let look = Look::Baked { exponent: light.exponents[sheet], cut_by };
+            let exponent = light.exponents[sheet];
+            let look = if keeps { kept(Some(exponent.unwrap_or(LEAST))) } else { Look::Baked { exponent, cut_by } };
             let coordinates = chart.corners.map(|place| atlas.coordinates(sheet, place));
             let group = groups.entry(look).or_default();
             if side == 0 {
@@ -118,7 +132,16 @@ pub(super) fn primitive_of<'a>(scene: &'a Scene, instance: &Instance) -> &'a Pri
 
 impl Group {
     /// What the file needs of the vertices.
-    pub(super) fn arrays(&self, scene: &Scene, instance: &Instance, look: Look, place: Place) -> Arrays {
+    ///
+    /// # Errors
+    /// They lie beyond the range of floats.
+    pub(super) fn arrays(
+        &self,
+        scene: &Scene,
+        instance: &Instance,
+        look: Look,
+        place: Place,
+    ) -> Result<Arrays, BakeError> {
         let primitive = primitive_of(scene, instance);
         let material = &scene.materials()[primitive.material.0];
         let positions = self.vertices.iter().map(|vertex| {
@@ -126,35 +149,38 @@ impl Group {
             let behind = vertex.front.normalize_or_zero() * (BEHIND * place.radius);
             (world - behind - place.origin).as_vec3().to_array()
         });
-        let positions = positions.collect();
+        let positions: Vec<[f32; 3]> = positions.collect();
+        if !positions.as_flattened().iter().all(|at| at.is_finite()) {
+            return Err(BakeError::Beyond { scene: scene.name.clone() });
+        }
         let of = |set: usize| -> Option<Vec<[f32; 2]>> {
             let all = primitive.texcoords[set].as_ref()?;
             Some(self.vertices.iter().map(|vertex| finite(all[vertex.source as usize])).collect())
         };
         let colors = primitive.colors.as_ref().filter(|_| !matches!(look, Look::Baked { cut_by: None, .. }));
-        let colors = colors.map(|all| {
-            self.vertices.iter().map(|vertex| all[vertex.source as usize].map(|it| it.clamp(0.0, 1.0))).collect()
-        });
-        match look {
-            Look::Kept(_) => {
+        let colors =
+            colors.map(|all| self.vertices.iter().map(|vertex| all[vertex.source as usize].map(unit)).collect());
+        Ok(match look {
+            Look::Kept { light, .. } => {
                 let used = |set: u32| material.textures().any(|texture| texture.texcoord == set);
-                let second = of(1).filter(|_| used(1));
-                // The format wants a first set before a second one.
-                let first = of(0).filter(|_| used(0) || second.is_some());
-                let first = first.or_else(|| second.as_ref().map(|second| vec![[0.0; 2]; second.len()]));
+                // Textures without coordinates are read at their zero, and the format wants a first set before a second one.
+                let set = |set: usize| of(set).unwrap_or_else(|| vec![[0.0; 2]; self.vertices.len()]);
+                let lit = light.map(|_| self.vertices.iter().map(|vertex| vertex.coordinates).collect());
+                let second = lit.or_else(|| used(1).then(|| set(1)));
+                let first = (used(0) || second.is_some()).then(|| set(0));
                 Arrays { positions, normals: self.normals(primitive, instance), texcoords: [first, second], colors }
             }
             Look::Baked { cut_by, .. } => {
                 let baked: Vec<[f32; 2]> = self.vertices.iter().map(|vertex| vertex.coordinates).collect();
                 let cutting = material.base_color_texture.filter(|_| cut_by.is_some());
-                let own = cutting.and_then(|texture| {
-                    let all = of(texture.texcoord as usize)?;
-                    Some(all.into_iter().map(|at| finite(texture.apply(at))).collect())
+                let own = cutting.map(|texture| {
+                    let all = of(texture.texcoord as usize).unwrap_or_else(|| vec![[0.0; 2]; baked.len()]);
+                    all.into_iter().map(|at| finite(texture.apply(at))).collect()
                 });
                 let own = own.or_else(|| of(0)).unwrap_or_else(|| baked.clone());
                 Arrays { positions, normals: None, texcoords: [Some(own), Some(baked)], colors }
             }
-        }
+        })
     }
 
     /// By the inverse transpose.
@@ -165,6 +191,7 @@ impl Group {
         let side = if instance.flips_winding { -1.0 } else { 1.0 };
         let turned = |vertex: &Vertex| {
             let normal = cofactors * wide(all[vertex.source as usize]) * side;
+            let normal = if vertex.front == DVec3::ZERO { normal } else { -normal };
             normal.normalize_or(DVec3::Y).as_vec3().normalize_or(glam::Vec3::Y).to_array()
         };
         Some(self.vertices.iter().map(turned).collect())

@@ -22,23 +22,25 @@ pub(super) struct Light {
     pub(super) parts: BTreeMap<Slot, ColorImage>,
     /// sRGB-encoded, of the atlas; what it is multiplied by is that of the sheet.
     pub(super) emissive: Vec<[u8; 3]>,
+    /// Of each surface, whether it keeps the scene's material: mirrors and glass, with little diffuse light or none.
+    pub(super) kept: Vec<bool>,
     /// Of each sheet the exponent of the power of two that its texels are multiplied by, W/(m² sr); `None`: it is black.
     pub(super) exponents: Vec<Option<i32>>,
 }
 
 impl Light {
-    /// `detail`: texels along the side of one that light was found at.
-    pub(super) fn new(atlas: &Atlas, found: &SurfaceLight, looks: &[SurfaceLooks], detail: u32) -> Light {
+    pub(super) fn new(atlas: &Atlas, found: &SurfaceLight, looks: &[SurfaceLooks]) -> Light {
         let texel_count = atlas.size[0] as usize * atlas.size[1] as usize;
         let black = || ColorImage::black(atlas.size);
         let mut light = Light {
             irradiance: black(),
             parts: [Slot::Direct, Slot::Diffuse, Slot::Caustics].into_iter().map(|slot| (slot, black())).collect(),
             emissive: vec![[0; 3]; texel_count],
+            kept: looks.iter().map(SurfaceLooks::keep_the_material).collect(),
             exponents: Vec::new(),
         };
         for sheet in &atlas.sheets {
-            let received = received(sheet, found, detail);
+            let received = received(sheet, found);
             let of = |start: usize| received.iter().map(move |it| [it[start], it[start + 1], it[start + 2]]);
             let (direct, diffuse, caustics): (Vec<_>, Vec<_>, Vec<_>) =
                 (of(0).collect(), of(3).collect(), of(6).collect());
@@ -68,10 +70,10 @@ impl Light {
 }
 
 /// Direct, diffuse and caustic irradiance of each of its texels. Those within geometry have that of their neighbours.
-fn received(sheet: &Sheet, found: &SurfaceLight, detail: u32) -> Vec<[f32; 9]> {
+fn received(sheet: &Sheet, found: &SurfaceLight) -> Vec<[f32; 9]> {
     let numbers = sheet.first as usize..sheet.first as usize + sheet.texel_count();
     let mut known: Vec<bool> = numbers.clone().map(|number| found.valid[number]).collect();
-    let arrivals = smoothed(&found.arrivals[numbers.clone()], &known, sheet.size, SMOOTHED * detail);
+    let arrivals = smoothed(&found.arrivals[numbers.clone()], &known, sheet.size, SMOOTHED * found.detail);
     let of = |number: usize| {
         let [direct, diffuse, caustics] = [&found.direct, &found.diffuse, &found.caustics].map(|it| it[number]);
         let arrival = arrivals[number - sheet.first as usize];

@@ -13,7 +13,13 @@ use crate::scene::{Alpha, Material, MaterialId, Scene, TextureRef};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Look {
     /// The scene's own material.
-    Kept(MaterialId),
+    Kept {
+        id: MaterialId,
+        /// How much longer things are in the scene than in their mesh, where that matters to the material: a float's bits.
+        scale: u32,
+        /// Of what the diffuse lobe of one side reflects, as below; `None`: nothing is added.
+        light: Option<i32>,
+    },
     /// Baked light.
     Baked {
         /// Of the power of two that the atlas is multiplied by; `None`: black.
@@ -46,7 +52,7 @@ impl<'a> Materials<'a> {
             return Ok(*known);
         }
         let material = match look {
-            Look::Kept(id) => self.kept(glb, id)?,
+            Look::Kept { id, scale, light } => self.kept(glb, id, f32::from_bits(scale), light)?,
             Look::Baked { exponent, cut_by } => self.baked(glb, exponent, cut_by)?,
         };
         self.written.push(material);
@@ -59,6 +65,14 @@ impl<'a> Materials<'a> {
         material["extensions"][name] = extension;
     }
 
+    /// What the atlas says.
+    fn emit(&mut self, material: &mut Value, exponent: i32) {
+        material["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
+        material["emissiveTexture"] = json!({ "index": self.atlas, "texCoord": 1 });
+        let strength = json!({ "emissiveStrength": 2.0_f64.powi(exponent) });
+        self.extend(material, "KHR_materials_emissive_strength", strength);
+    }
+
     /// Nothing is reflected: neither lights that a viewer adds nor what surrounds it change what shows.
     fn baked(&mut self, glb: &mut Glb, exponent: Option<i32>, cut_by: Option<MaterialId>) -> Result<Value, BakeError> {
         let name = exponent.map_or_else(|| "black".to_owned(), |exponent| format!("light times 2^{exponent}"));
@@ -67,17 +81,14 @@ impl<'a> Materials<'a> {
             "pbrMetallicRoughness": { "baseColorFactor": [0.0, 0.0, 0.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0 },
         });
         if let Some(exponent) = exponent {
-            material["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
-            material["emissiveTexture"] = json!({ "index": self.atlas, "texCoord": 1 });
-            let strength = json!({ "emissiveStrength": 2.0_f64.powi(exponent) });
-            self.extend(&mut material, "KHR_materials_emissive_strength", strength);
+            self.emit(&mut material, exponent);
         }
         self.extend(&mut material, "KHR_materials_specular", json!({ "specularFactor": 0.0 }));
         if let Some(id) = cut_by {
             let of = &self.scene.materials()[id.0];
             material["name"] = format!("{name}, cut out as {}", of.name).into();
             cut_out(&mut material, of);
-            material["pbrMetallicRoughness"]["baseColorFactor"][3] = of.base_color[3].into();
+            material["pbrMetallicRoughness"]["baseColorFactor"][3] = unit(of.base_color[3]).into();
             if let Some(texture) = of.base_color_texture {
                 let index = self.textures.number(glb, self.scene, texture.texture, Channels::Alpha)?;
                 // Its coordinates come transformed as set 0.
@@ -97,16 +108,16 @@ impl<'a> Materials<'a> {
         Ok(info)
     }
 
-    fn kept(&mut self, glb: &mut Glb, id: MaterialId) -> Result<Value, BakeError> {
+    fn kept(&mut self, glb: &mut Glb, id: MaterialId, scale: f32, light: Option<i32>) -> Result<Value, BakeError> {
         let scene = self.scene;
         let material = &scene.materials()[id.0];
         let mut written = json!({
             "name": material.name,
-            "doubleSided": material.double_sided,
+            "doubleSided": material.double_sided && light.is_none(),
             "pbrMetallicRoughness": {
-                "baseColorFactor": material.base_color,
-                "metallicFactor": material.metallic,
-                "roughnessFactor": material.roughness.min(1.0),
+                "baseColorFactor": material.base_color.map(unit),
+                "metallicFactor": unit(material.metallic),
+                "roughnessFactor": unit(material.roughness),
             },
         });
         cut_out(&mut written, material);
@@ -120,19 +131,28 @@ impl<'a> Materials<'a> {
             }
         }
         if material.ior != Material::default().ior {
-            self.extend(&mut written, "KHR_materials_ior", json!({ "ior": material.ior }));
+            self.extend(
+                &mut written,
+                "KHR_materials_ior",
+                json!({ "ior": if material.ior > 0.0 { material.ior.max(1.0) } else { 0.0 } }),
+            );
         }
         let Material { specular, specular_color, transmission, .. } = *material;
         if specular != 1.0 || specular_color != [1.0; 3] {
-            let layer = json!({ "specularFactor": specular.min(1.0), "specularColorFactor": specular_color });
+            let layer = json!({ "specularFactor": unit(specular), "specularColorFactor": specular_color });
             self.extend(&mut written, "KHR_materials_specular", layer);
         }
         if transmission > 0.0 {
-            self.extend(&mut written, "KHR_materials_transmission", json!({ "transmissionFactor": transmission }));
+            self.extend(
+                &mut written,
+                "KHR_materials_transmission",
+                json!({ "transmissionFactor": unit(transmission) }),
+            );
         }
         if material.thickness > 0.0 {
-            let mut volume =
-                json!({ "thicknessFactor": material.thickness, "attenuationColor": material.attenuation_color });
+            let thickness = (material.thickness * scale).min(f32::MAX);
+            let attenuation = material.attenuation_color.map(unit);
+            let mut volume = json!({ "thicknessFactor": thickness, "attenuationColor": attenuation });
             if material.attenuation_distance.is_finite() {
                 volume["attenuationDistance"] = material.attenuation_distance.into();
             }
@@ -142,6 +162,9 @@ impl<'a> Materials<'a> {
             self.extend(&mut written, "KHR_materials_unlit", json!({}));
         }
         self.add_textures(glb, material, &mut written)?;
+        if let Some(exponent) = light {
+            self.emit(&mut written, exponent);
+        }
         Ok(written)
     }
 
@@ -180,8 +203,13 @@ impl<'a> Materials<'a> {
 fn cut_out(written: &mut Value, material: &Material) {
     if let Alpha::Mask { cutoff } = material.alpha {
         written["alphaMode"] = "MASK".into();
-        written["alphaCutoff"] = cutoff.into();
+        written["alphaCutoff"] = cutoff.clamp(0.0, f32::MAX).into();
     }
+}
+
+/// The format takes most factors from 0 to 1 alone, and the scene's may be greater.
+pub(super) fn unit(factor: f32) -> f32 {
+    if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
 /// A matrix as offset, rotation and scale: the extension has no shear, and whatever was read from it has none.

@@ -16,6 +16,7 @@ mod light;
 mod looks;
 mod materials;
 mod textures;
+mod warnings;
 
 use std::collections::BTreeMap;
 
@@ -60,7 +61,8 @@ impl Stage {
 pub struct BakeOptions {
     /// The light maps. Their `settle` does not matter.
     pub lightmaps: LightmapsOptions,
-    /// Texels of the file along the side of one of the light maps, 1 to [`MOST_DETAIL`]: direct light is found at each, the rest interpolated.
+    /// Texels of the file along the side of one of the light maps, 1 to [`MOST_DETAIL`], or fewer where there are more than four million: direct light is found at each, the rest
+    /// interpolated.
     pub detail: u32,
 }
 
@@ -82,8 +84,10 @@ pub struct Baked {
     pub irradiance: ColorImage,
     /// Its parts: [`Slot::Direct`] of the lights themselves, [`Slot::Diffuse`] of diffuse surfaces, [`Slot::Caustics`] by way of mirrors and glass.
     pub parts: BTreeMap<Slot, ColorImage>,
-    /// Surfaces, each lit by a rectangle of the atlas.
+    /// Sides of surfaces, each lit by a rectangle of the atlas.
     pub surfaces: usize,
+    /// The [`BakeOptions::detail`] that there was room for.
+    pub detail: u32,
 }
 
 /// Bakes the light of a scene as it is now.
@@ -105,19 +109,26 @@ pub fn bake(
         settings.methods.diffuse = DiffuseMethod::Lightmaps;
         settings.lightmaps = lightmaps.clone().with(|options| options.settle = LightmapsSettle::Always);
     });
-    let found = Renderer::new(context, settings)?.surface_light(scene, detail)?;
-    let found = found.ok_or_else(|| BakeError::Nothing { scene: scene.name.clone() })?;
+    let mut packed = None;
+    let found = Renderer::new(context, settings)?.surface_light(scene, detail, |map| {
+        let charts: Vec<_> = (0..triangle_count(scene)).map(|triangle| map.chart(triangle)).collect();
+        let atlas = Atlas::new(&charts)?;
+        packed = Some((charts, atlas));
+        Ok::<(), BakeError>(())
+    })?;
+    let nothing = || BakeError::Nothing { scene: scene.name.clone() };
+    let (found, (charts, atlas)) = found.zip(packed).ok_or_else(nothing)?;
+    warnings::warn_of_detail(found.detail, detail);
 
     hear(Stage::Surfaces);
-    let charts: Vec<_> = (0..triangle_count(scene)).map(|triangle| found.map.chart(triangle)).collect();
-    let atlas = Atlas::new(&charts)?;
     let looks = looks::mean_looks(scene, &charts, &atlas);
-    let light = Light::new(&atlas, &found, &looks, detail);
+    warnings::warn_of_looks(scene, &charts, &looks);
+    let light = Light::new(&atlas, &found, &looks);
 
     hear(Stage::File);
     let glb = document::write(scene, &charts, &atlas, &light)?;
     let Light { irradiance, parts, .. } = light;
-    Ok(Baked { glb, irradiance, parts, surfaces: atlas.sheets.len() })
+    Ok(Baked { glb, irradiance, parts, surfaces: atlas.sheets.len(), detail: found.detail })
 }
 
 /// Of all instances.

@@ -9,11 +9,23 @@ use clap::Args;
 use clap::builder::TypedValueParser;
 use irradia::bake::{BakeOptions, MOST_DETAIL, Stage, bake};
 use irradia::output::{Attributes, Target, write_exr};
-use irradia::renderer::{CrashMarkers, Preset, Settings, Technique};
+use irradia::renderer::{CrashMarkers, DeviceReport, Preset, Settings, Technique};
+use irradia::scene::Scene;
+use serde_json::json;
 
 use super::invocation::{Invocation, WrongUsage};
 use super::scene_args::SourceArgs;
 use super::values::{self, Setting};
+
+/// Settings of lightmaps that tell how light is renewed or shown, or are for photons alone.
+const WITHOUT_EFFECT: [&str; 6] = [
+    "lightmaps.settle",
+    "lightmaps.show",
+    "lightmaps.texels",
+    "lightmaps.blend",
+    "lightmaps.nearest",
+    "lightmaps.invalidate",
+];
 
 /// Bake the diffuse light of a scene into a .glb that any viewer shows, and its irradiance into an .exr beside it
 #[derive(Debug, Args)]
@@ -67,11 +79,14 @@ pub(crate) fn run(args: &BakeArgs, invocation: &Invocation<'_>) -> Result<()> {
         progress.about(stage.name());
     })?;
     drop(progress);
-    write_exr(&irradiance, &baked.irradiance, &baked.parts, &attributes(args, &scene.name, &settings))?;
-    glb.write(&baked.glb)?;
+    // They belong together: neither is replaced unless both could be written.
+    let staged = glb.stage(&baked.glb)?;
+    let made = Made { args, scene: &scene, settings: &settings, device: &context.device(), detail: baked.detail };
+    write_exr(&irradiance, &baked.irradiance, &baked.parts, &made.attributes())?;
+    staged.finish()?;
     let [width, height] = baked.irradiance.size;
     invocation.terminal.say(&format!(
-        "wrote {} ({:.1} MB) and {} ({width}x{height}, {} surfaces) in {:.2} s",
+        "wrote {} ({:.1} MB) and {} ({width}x{height}, {} sides of surfaces) in {:.2} s",
         args.output.display(),
         1e-6 * baked.glb.len() as f64,
         beside.display(),
@@ -90,26 +105,53 @@ fn settings(args: &BakeArgs) -> Result<Settings> {
                 message: "light is baked by lightmaps; its settings alone can be --set"
             });
         }
+        if WITHOUT_EFFECT.contains(&key.as_str()) {
+            bail!(WrongUsage {
+                subcommand: "bake",
+                message: "baked light is settled light by rays: lightmaps.settle, show, texels, blend, nearest and invalidate change nothing of it"
+            });
+        }
         settings.set(key, value)?;
     }
+    settings.set("lightmaps.settle", "always")?;
     if let Some(texel) = args.texel {
         settings.set("lightmaps.texel", &texel.to_string())?;
     }
     Ok(settings)
 }
 
-fn attributes(args: &BakeArgs, scene: &str, settings: &Settings) -> Attributes {
-    let lightmaps = settings.options().remove("lightmaps").map(|options| options.to_string()).unwrap_or_default();
-    let all = [
-        ("irradia", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scene", scene.to_owned()),
-        ("frame", args.frame.to_string()),
-        ("quantity", "irradiance, W/m²".to_owned()),
-        ("detail", args.detail.to_string()),
-        ("preset", args.preset.name().to_owned()),
-        ("settings", format!("{{\"lightmaps\":{lightmaps}}}")),
-    ];
-    all.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+/// What the light was made of.
+struct Made<'a> {
+    args: &'a BakeArgs,
+    scene: &'a Scene,
+    settings: &'a Settings,
+    device: &'a DeviceReport,
+    /// As it was taken.
+    detail: u32,
+}
+
+impl Made<'_> {
+    /// Names as those of pictures.
+    fn attributes(&self) -> Attributes {
+        let options = self.settings.options().remove("lightmaps");
+        let lightmaps = options.map(|options| options.to_string()).unwrap_or_default();
+        let lights: Vec<&str> = self.scene.lights().iter().map(|light| light.name.as_str()).collect();
+        let all = [
+            ("irradia", env!("CARGO_PKG_VERSION").to_owned()),
+            ("scene", self.scene.name.clone()),
+            ("frame", self.args.frame.to_string()),
+            ("lights", json!(lights).to_string()),
+            ("sky", json!(self.scene.sky()).to_string()),
+            ("quantity", "irradiance, W/m²".to_owned()),
+            ("detail", self.detail.to_string()),
+            ("preset", self.args.preset.name().to_owned()),
+            ("settings", format!("{{\"lightmaps\":{lightmaps}}}")),
+            ("device", self.device.name.clone()),
+            ("driver", self.device.driver.clone()),
+            ("api", self.device.api.clone()),
+        ];
+        all.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
 }
 
 fn detail() -> impl TypedValueParser<Value = u32> {

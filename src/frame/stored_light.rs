@@ -8,6 +8,8 @@ use crate::graph::bindings::BufferRef;
 /// What texels of light maps receive when nothing changes any more, W/m², by its way: each is four floats a texel.
 pub(crate) struct StoredLight {
     pub(crate) map: Arc<Lightmap>,
+    /// Texels along the side of one that light was found at: those asked for, or fewer where there are many.
+    pub(crate) detail: u32,
     /// Of each texel: 0 if it lies within geometry.
     pub(crate) valid: BufferRef<u32>,
     /// Of the lights themselves.

@@ -21,4 +21,4 @@ pub use self::format::ImageFormat;
 pub(crate) use self::layers::{SealedError, read_attributes, read_sealed_layers, write_sealed_layers};
 pub use self::png::write_png;
 pub use self::supersample::box_reduced;
-pub use self::target::Target;
+pub use self::target::{Staged, Target};

@@ -25,6 +25,15 @@ pub struct Target {
     stream: Option<Arc<File>>,
 }
 
+/// A file that is whole but not yet in its place; it goes when it is dropped.
+#[derive(Debug)]
+#[must_use]
+pub struct Staged {
+    path: PathBuf,
+    /// With the name that it gets; `None`: a stream has it.
+    file: Option<(NamedTempFile, PathBuf)>,
+}
+
 /// What a path leads to.
 enum Place {
     /// A regular file, by the name that is no link, and what is there of it already.
@@ -71,19 +80,42 @@ impl Target {
     /// # Errors
     /// Those of [`open`](Target::open), and whatever the file system says; then nothing is left of the file.
     pub fn write(&self, bytes: &[u8]) -> Result<(), OutputError> {
+        self.stage(bytes)?.finish()
+    }
+
+    /// Writes the bytes beside the file, which stays as it is until [`Staged::finish`]: whatever can fail has been done then. A stream has them at once.
+    ///
+    /// # Errors
+    /// Those of [`write`](Target::write).
+    pub fn stage(&self, bytes: &[u8]) -> Result<Staged, OutputError> {
         let failed = |error: &dyn std::fmt::Display| OutputError::write(&self.path, error);
+        let staged = |file| Staged { path: self.path.clone(), file };
         if let Some(stream) = &self.stream {
-            return stream.as_ref().write_all(bytes).map_err(|error| failed(&error));
+            stream.as_ref().write_all(bytes).map_err(|error| failed(&error))?;
+            return Ok(staged(None));
         }
         match place(&self.path)? {
-            Place::Stream(stream) => stream.open(&self.path)?.write_all(bytes).map_err(|error| failed(&error)),
+            Place::Stream(stream) => {
+                stream.open(&self.path)?.write_all(bytes).map_err(|error| failed(&error))?;
+                Ok(staged(None))
+            }
             Place::File(name, existing) => {
                 let mut file = temporary(&self.path, &name, existing.as_ref())?;
                 file.write_all(bytes).map_err(|error| failed(&error))?;
-                file.persist(&name).map_err(|error| failed(&error.error))?;
-                Ok(())
+                Ok(staged(Some((file, name))))
             }
         }
+    }
+}
+
+impl Staged {
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// Whatever the file system says; then the file is as it was.
+    pub fn finish(self) -> Result<(), OutputError> {
+        let Some((file, name)) = self.file else { return Ok(()) };
+        file.persist(&name).map(drop).map_err(|error| OutputError::write(&self.path, error.error))
     }
 }
 
@@ -242,6 +274,20 @@ pub(crate) mod tests {
         target.write(b"new").expect("written");
         assert_eq!(fs::read(&path).expect("there"), b"new");
         assert_eq!(folder.names(), ["a.txt"]);
+    }
+
+    #[test]
+    fn what_is_staged_waits_or_goes() {
+        let folder = TestFolder::new("target-staged");
+        let path = folder.0.join("a.txt");
+        fs::write(&path, "old").expect("writable");
+        let target = Target::open(&path).expect("writable");
+        drop(target.stage(b"dropped").expect("written"));
+        assert_eq!((fs::read(&path).expect("there"), folder.names()), (b"old".to_vec(), vec!["a.txt".to_owned()]));
+        let staged = target.stage(b"new").expect("written");
+        assert_eq!(fs::read(&path).expect("there"), b"old");
+        staged.finish().expect("renamed");
+        assert_eq!((fs::read(&path).expect("there"), folder.names()), (b"new".to_vec(), vec!["a.txt".to_owned()]));
     }
 
     #[test]

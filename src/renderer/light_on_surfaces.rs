@@ -1,7 +1,5 @@
 //! The light that a method keeps on surfaces, off the device: for whoever writes it down.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::declare::{Prepared, declare};
@@ -17,7 +15,8 @@ use crate::slot::Slot;
 
 /// What each texel of a scene's light maps receives, W/m², by its way ([`StoredLight`]).
 pub(crate) struct SurfaceLight {
-    pub(crate) map: Arc<Lightmap>,
+    /// As in [`StoredLight`].
+    pub(crate) detail: u32,
     /// Whether the texel lies in the open.
     pub(crate) valid: Vec<bool>,
     pub(crate) direct: Vec<[f32; 3]>,
@@ -28,11 +27,16 @@ pub(crate) struct SurfaceLight {
 
 impl Renderer {
     /// What the settings' method of the slot `diffuse` keeps of the scene as it is now, on `detail` times as many texels a side; `None` if it keeps nothing or has
-    /// nothing to do.
+    /// nothing to do. `admit` is asked before the device works, which may take long.
     ///
     /// # Errors
-    /// As [`Renderer::render`].
-    pub(crate) fn surface_light(&mut self, scene: &Scene, detail: u32) -> Result<Option<SurfaceLight>, Error> {
+    /// As [`Renderer::render`], and those of `admit`.
+    pub(crate) fn surface_light<E: From<Error>>(
+        &mut self,
+        scene: &Scene,
+        detail: u32,
+        mut admit: impl FnMut(&Lightmap) -> Result<(), E>,
+    ) -> Result<Option<SurfaceLight>, E> {
         // No pixel is looked at.
         let projection = Projection::Perspective { vertical_fov: 1.0, aspect: None, near: 1.0 };
         let camera = CameraView::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection);
@@ -47,12 +51,13 @@ impl Renderer {
             let Some(stored) = declare(&mut graph, &prepared, &self.settings, &request)?.stored_light else {
                 return Ok(None);
             };
-            let StoredLight { map, valid, direct, caustics, arrivals, diffuse } = &*stored;
+            let StoredLight { map, detail, valid, direct, caustics, arrivals, diffuse } = &*stored;
+            admit(map)?;
             let valid = graph.read_back_buffer(*valid);
             let mut read = |buffer: &BufferRef<[f32; 4]>| graph.read_back_buffer(*buffer);
             let (direct, diffuse, caustics) = (read(direct), read(diffuse), caustics.as_ref().map(&mut read));
             let arrivals = arrivals.as_ref().map(|[lamps, sky]| [read(lamps), read(sky)]);
-            let mut executed = graph.run(Timing::Frame)?;
+            let mut executed = graph.run(Timing::Frame).map_err(Error::from)?;
             if !executed.outgrown.is_empty() {
                 continue;
             }
@@ -64,7 +69,7 @@ impl Renderer {
                 both.map(|(lamps, one)| [0, 1, 2].map(|it| lamps[it] + scene.sky()[it] * one[it])).collect()
             });
             return Ok(Some(SurfaceLight {
-                map: map.clone(),
+                detail: *detail,
                 direct: floats(direct),
                 diffuse: floats(diffuse),
                 caustics: caustics.map_or_else(nothing, &mut floats),

@@ -8,11 +8,12 @@ use super::world::Scene;
 /// The mean of (1 − v·h)⁵ over both directions (glsl/lib/brdf.glsl).
 const MEAN_HALF_FRESNEL: f32 = 0.003685;
 
-/// A point's albedo, and its radiance in W/(m² sr) on the side that emits.
+/// A point's albedo, its radiance in W/(m² sr) on the side that emits, and its share of what is neither metal nor glass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointLook {
     pub(crate) albedo: [f32; 3],
     pub(crate) emitted: [f32; 3],
+    pub(crate) diffuse: f32,
 }
 
 /// The points of a primitive.
@@ -61,11 +62,13 @@ impl Appearance<'_> {
             f0 + (f90 - f0) * MEAN_HALF_FRESNEL
         });
         let left = 1.0 - layer.into_iter().fold(0.0, f32::max);
-        let lobe = if self.material.unlit { 0.0 } else { (1.0 - metallic) * (1.0 - transmission) * left };
+        let diffuse = if self.material.unlit { 0.0 } else { ((1.0 - metallic) * (1.0 - transmission)).clamp(0.0, 1.0) };
+        let lobe = diffuse * left;
         let glow = texel(self.material.emissive_texture);
         Some(PointLook {
             albedo: [0, 1, 2].map(|channel| (base[channel] * lobe).clamp(0.0, 1.0)),
             emitted: [0, 1, 2].map(|channel| emissive[channel] * glow[channel]),
+            diffuse,
         })
     }
 
@@ -128,7 +131,7 @@ mod tests {
             base_color_texture: Some(TextureRef::new(TextureId(0))),
             ..plain.clone()
         };
-        assert_eq!(look(&glowing), Some(PointLook { albedo: [0.8, 0.4, 0.2], emitted: [3.0; 3] }));
+        assert_eq!(look(&glowing), Some(PointLook { albedo: [0.8, 0.4, 0.2], emitted: [3.0; 3], diffuse: 1.0 }));
     }
 
     #[test]

@@ -68,6 +68,11 @@ impl Looks {
     }
 }
 
+/// Whether it has a diffuse lobe anywhere.
+pub(crate) fn is_diffuse(material: &Material) -> bool {
+    diffuse_sides(material) > 0
+}
+
 fn diffuse_sides(material: &Material) -> u32 {
     match (reflected(material) > 0.0, material.double_sided) {
         (false, _) => 0,

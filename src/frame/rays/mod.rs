@@ -21,6 +21,7 @@ mod triangles;
 mod uploaded;
 
 pub(crate) use self::lightmap::{Lightmap, Texels, TriangleChart};
+pub(crate) use self::looks::is_diffuse;
 pub(crate) use self::motion::Motion;
 pub(crate) use self::surfaces::surfaces_key;
 pub(crate) use self::targets::TargetShares;

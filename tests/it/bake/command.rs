@@ -35,13 +35,20 @@ fn two_files_appear_and_replace_older_ones() {
     let (glb, exr) = (folder.join("a.b.glb"), folder.join("a.b.irradiance.exr"));
     fs::write(&glb, "old").expect("the test's own folder");
     for detail in ["1", "2"] {
-        let arguments = ["cornell-point", "-o", text(&glb), "--detail", detail, "--validation", "sync"];
+        let lamp = "point:0,1,0,2";
+        let arguments =
+            ["cornell-point", "-o", text(&glb), "--detail", detail, "--validation", "sync", "--light", lamp];
         let output = irradia(&[&arguments[..], &COARSE].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert!(stderr(&output).contains("a.b.irradiance.exr") && output.stdout.is_empty(), "{}", stderr(&output));
         assert_eq!(names_in(&folder), ["a.b.glb", "a.b.irradiance.exr"]);
         let read = read_exr(&exr).expect("an EXR of ours");
         assert_eq!((&*read.attributes["quantity"], &*read.attributes["detail"]), ("irradiance, W/m²", detail));
+        let said = |name: &str, word: &str| assert!(read.attributes[name].contains(word), "{:?}", read.attributes);
+        said("settings", "\"settle\":\"always\"");
+        said("lights", lamp);
+        said("sky", "[0.0,0.0,0.0]");
+        assert!(["device", "driver", "api"].iter().all(|name| !read.attributes[*name].is_empty()));
         assert_eq!(read.slots.keys().copied().collect::<Vec<_>>(), [Slot::Direct, Slot::Diffuse, Slot::Caustics]);
         let scene = Scene::open(text(&glb)).expect("a scene");
         assert_eq!([scene.textures()[0].width, scene.textures()[0].height], read.image.size);
@@ -75,7 +82,8 @@ fn what_cannot_be_baked_is_said_in_one_sentence() {
         assert!(words.iter().all(|word| message.contains(word)), "{arguments:?}: {message}");
         assert_eq!(names_in(&folder), ["own.glb"], "{arguments:?}");
     }
-    let wrong: [(&[&str], &str); 4] = [
+    let wrong: [(&[&str], &str); 5] = [
+        (&["cornell-point", "-o", text(&glb), "--set", "lightmaps.show=received"], "change nothing"),
         (&["cornell-point", "-o", "a.gltf"], ".glb"),
         (&["cornell-point"], "--output"),
         (&["cornell-point", "-o", text(&glb), "--set", "rsm.vpls=64"], "lightmaps"),
@@ -85,5 +93,23 @@ fn what_cannot_be_baked_is_said_in_one_sentence() {
         let output = irradia(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
         assert!(stderr(&output).contains(word), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+/// Of two files that belong together one is not replaced alone.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_both_files() {
+    let folder = folder("full");
+    let both = [folder.join("a.glb"), folder.join("a.irradiance.exr")];
+    for (full, stays) in [(0, 1), (1, 0)] {
+        both.iter().for_each(|path| drop(fs::remove_file(path)));
+        std::os::unix::fs::symlink("/dev/full", &both[full]).expect("the test's own folder");
+        fs::write(&both[stays], "old").expect("the test's own folder");
+        let output = irradia(&[&["cornell-point", "-o", text(&both[0]), "--detail", "1", "-q"][..], &COARSE].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains("No space left"), "{}", stderr(&output));
+        assert!(fs::read(&both[stays]).expect("there") == b"old", "{full}");
+        assert_eq!(names_in(&folder), ["a.glb", "a.irradiance.exr"]);
     }
 }

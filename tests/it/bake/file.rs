@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{baked, context, options};
 
 /// The JSON of a binary glTF file, and its buffer.
-fn parts(glb: &[u8]) -> (Value, &[u8]) {
+pub(super) fn parts(glb: &[u8]) -> (Value, &[u8]) {
     let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four bytes")) as usize;
     assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
     let json = 20..20 + word(12);
@@ -19,11 +19,11 @@ fn parts(glb: &[u8]) -> (Value, &[u8]) {
     (serde_json::from_slice(&glb[json]).expect("JSON"), &glb[binary..])
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
-fn number(value: &Value) -> usize {
+pub(super) fn number(value: &Value) -> usize {
     value.as_u64().expect("a number") as usize
 }
 

@@ -2,9 +2,10 @@
 
 mod command;
 mod file;
+mod kept;
 mod materials;
 
-use irradia::bake::{BakeOptions, Baked, bake};
+use irradia::bake::{BakeError, BakeOptions, Baked, Stage, bake};
 use irradia::glam::{DAffine3, DVec3};
 use irradia::renderer::{
     CausticsMethod, Context, ContextOptions, DiffuseMethod, FrameRequest, Preset, Renderer, Settings, Slot, Technique,
@@ -176,6 +177,22 @@ fn fine_textures_keep_their_mean() {
     let expected = 0.4 / std::f32::consts::PI * 8.0 / 4.0;
     println!("{mean} in place of {expected}");
     assert!((mean / expected - 1.0).abs() < 0.03, "{mean} {expected}");
+}
+
+/// The image's size is known before any light is.
+#[test]
+fn what_is_too_long_is_said_before_the_work() {
+    let context = context();
+    let mut scene = Scene::empty("strip");
+    add_square(&mut scene, [1.0, 0.0], lambert([0.5; 3]));
+    let long = DAffine3::from_scale(DVec3::new(100.0, 1.0, 1e-3));
+    scene.set_local_transform(irradia::scene::NodeId(0), long).expect("sound");
+    add_point_light(&mut scene, DVec3::new(0.0, 2.0, 0.0), 8.0);
+    let mut options = options(100);
+    (options.lightmaps.texel, options.detail) = (0.015, 2);
+    let mut stages = Vec::new();
+    let error = bake(&context, &scene, &options, |stage| stages.push(stage)).expect_err("26,000 texels in a row");
+    assert!(matches!(error, BakeError::TooLarge { .. }) && stages == [Stage::Light], "{error} {stages:?}");
 }
 
 #[test]
