@@ -220,7 +220,7 @@ pub unsafe extern "C" fn irradia_renderer_reset_history(renderer: *mut RendererH
     call(|border| {
         // SAFETY: the host's pointer is what the header asks for.
         let RendererState { renderer, shared, .. } = unsafe { border.enter(renderer) }?;
-        shared.run(|| renderer.reset_history());
+        shared.workers.listen(|| renderer.reset_history());
         Ok(())
     })
 }
@@ -231,7 +231,7 @@ pub unsafe extern "C" fn irradia_renderer_invalidate(renderer: *mut RendererHand
     call(|border| {
         // SAFETY: the host's pointer is what the header asks for.
         let RendererState { renderer, shared, .. } = unsafe { border.enter(renderer) }?;
-        shared.run(|| renderer.invalidate());
+        shared.workers.listen(|| renderer.invalidate());
         Ok(())
     })
 }

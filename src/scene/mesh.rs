@@ -38,13 +38,23 @@ pub struct Primitive {
 /// Elements that a thread takes at once: enough to be worth its while, and few enough that a near cache holds them.
 pub(crate) const CHUNK: usize = 1 << 13;
 
+/// Whether the numbers of all vertices are finite: all at once, without a branch.
+pub(crate) fn all_finite<const N: usize>(values: &[[f32; N]]) -> bool {
+    !values.as_flattened().iter().fold(false, |any, axis| any | !axis.is_finite())
+}
+
+/// The largest of some indices.
+pub(crate) fn largest_index(indices: &[u32]) -> u32 {
+    indices.iter().fold(0, |largest, &index| largest.max(index))
+}
+
 /// The first vertex with a number that is not finite.
 pub(crate) fn first_endless<const N: usize>(values: &[[f32; N]]) -> Option<usize> {
     let endless = |value: &[f32; N]| !value.iter().all(|axis| axis.is_finite());
-    // Of a chunk all numbers at once, without a branch; only one that has such a number is searched.
+    // Only a chunk that has such a number is searched.
     let in_chunk = |(index, chunk): (usize, &[[f32; N]])| {
-        let any = chunk.as_flattened().iter().fold(false, |any, axis| any | !axis.is_finite());
-        if any { chunk.iter().position(endless).map(|vertex| index * CHUNK + vertex) } else { None }
+        let found = if all_finite(chunk) { None } else { chunk.iter().position(endless) };
+        found.map(|vertex| index * CHUNK + vertex)
     };
     values.par_chunks(CHUNK).enumerate().find_map_first(in_chunk)
 }
@@ -90,17 +100,22 @@ impl Primitive {
 
     /// Says what contradicts the description of the fields, if anything does.
     pub(super) fn fault(&self) -> Option<String> {
-        if let Some(fault) = self.length_fault() {
-            return Some(fault);
+        self.count_fault().or_else(|| self.number_fault())
+    }
+
+    /// The same of how many there are of everything.
+    pub(super) fn count_fault(&self) -> Option<String> {
+        if self.indices.len().is_multiple_of(3) {
+            return self.length_fault();
         }
+        Some(format!("{} indices do not make whole triangles", self.indices.len()))
+    }
+
+    fn number_fault(&self) -> Option<String> {
         if let Some(vertex) = first_endless(&self.positions) {
             return Some(format!("the position of vertex {vertex} is not finite"));
         }
-        if !self.indices.len().is_multiple_of(3) {
-            return Some(format!("{} indices do not make whole triangles", self.indices.len()));
-        }
-        let largest = |indices: &[u32]| indices.iter().fold(0, |largest, &index| largest.max(index));
-        let highest = self.indices.par_chunks(CHUNK).map(largest).max();
+        let highest = self.indices.par_chunks(CHUNK).map(largest_index).max();
         let count = self.positions.len();
         highest
             .filter(|&index| index as usize >= count)

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::mesh::Mesh;
+use super::mesh::{Mesh, Primitive};
 use super::world::Scene;
 use super::{MeshId, SceneError};
 
@@ -11,7 +11,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::UnknownId`] if a primitive's material does not exist; [`SceneError::InvalidObject`] if its arrays
-    /// contradict what [`Primitive`](super::Primitive) promises.
+    /// contradict what [`Primitive`] promises.
     pub fn add_mesh(&mut self, mesh: Mesh) -> Result<MeshId, SceneError> {
         self.check_mesh(&mesh)?;
         Ok(self.insert_mesh(mesh))
@@ -28,27 +28,36 @@ impl Scene {
     }
 
     /// [`Scene::add_mesh`] of a mesh as hosts have it: its normals are made unit vectors, and tangents are made where the material has a normal texture, as of
-    /// files.
+    /// files. `sound`: of its numbers all are known to be what they must, and its normals to be unit vectors.
     #[cfg(feature = "capi")]
-    pub(crate) fn add_host_mesh(&mut self, mut mesh: Mesh) -> Result<MeshId, SceneError> {
-        self.check_mesh(&mesh)?;
-        self.complete(&mut mesh);
+    pub(crate) fn add_host_mesh(&mut self, mut mesh: Mesh, sound: bool) -> Result<MeshId, SceneError> {
+        self.check_host_mesh(&mesh, sound)?;
+        self.complete(&mut mesh, sound);
         Ok(self.insert_mesh(mesh))
     }
 
     /// Likewise [`Scene::set_mesh`].
     #[cfg(feature = "capi")]
-    pub(crate) fn set_host_mesh(&mut self, id: MeshId, mut mesh: Mesh) -> Result<(), SceneError> {
-        self.check_replacement(id, &mesh)?;
-        self.complete(&mut mesh);
+    pub(crate) fn set_host_mesh(&mut self, id: MeshId, mut mesh: Mesh, sound: bool) -> Result<(), SceneError> {
+        self.check("mesh", id.0, self.meshes.len())?;
+        self.check_host_mesh(&mesh, sound)?;
+        self.check_part_count(id, &mesh)?;
+        self.complete(&mut mesh, sound);
         self.replace_mesh(id, mesh);
         Ok(())
     }
 
     #[cfg(feature = "capi")]
-    fn complete(&self, mesh: &mut Mesh) {
+    fn check_host_mesh(&self, mesh: &Mesh, sound: bool) -> Result<(), SceneError> {
+        if sound { self.check_mesh_by(mesh, Primitive::count_fault) } else { self.check_mesh(mesh) }
+    }
+
+    #[cfg(feature = "capi")]
+    fn complete(&self, mesh: &mut Mesh, sound: bool) {
         for primitive in &mut mesh.primitives {
-            super::tangents::repair_normals(primitive);
+            if !sound {
+                super::tangents::repair_normals(primitive);
+            }
             match self.materials[primitive.material.0].normal_texture {
                 Some(texture) => super::tangents::complete(primitive, texture),
                 None => primitive.tangents = None,
@@ -83,6 +92,10 @@ impl Scene {
     fn check_replacement(&self, id: MeshId, mesh: &Mesh) -> Result<(), SceneError> {
         self.check("mesh", id.0, self.meshes.len())?;
         self.check_mesh(mesh)?;
+        self.check_part_count(id, mesh)
+    }
+
+    fn check_part_count(&self, id: MeshId, mesh: &Mesh) -> Result<(), SceneError> {
         let (old, new) = (self.meshes[id.0].primitives.len(), mesh.primitives.len());
         if old == new {
             return Ok(());
@@ -91,9 +104,13 @@ impl Scene {
     }
 
     fn check_mesh(&self, mesh: &Mesh) -> Result<(), SceneError> {
+        self.check_mesh_by(mesh, Primitive::fault)
+    }
+
+    fn check_mesh_by(&self, mesh: &Mesh, fault: fn(&Primitive) -> Option<String>) -> Result<(), SceneError> {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
             self.check("material", primitive.material.0, self.materials.len())?;
-            if let Some(fault) = primitive.fault() {
+            if let Some(fault) = fault(primitive) {
                 return Err(self.invalid("mesh", &mesh.name, format!("primitive {index}: {fault}")));
             }
         }

@@ -76,7 +76,9 @@ pub use load_options::LoadOptions;
 pub use material::{Alpha, Material, Texture, TextureRef, Wrap};
 pub use mesh::{Bounds, Instance, Mesh, Primitive};
 #[cfg(feature = "capi")]
-pub(crate) use mesh::{CHUNK, first_endless};
+pub(crate) use mesh::{CHUNK, all_finite, first_endless, largest_index};
+#[cfg(feature = "capi")]
+pub(crate) use tangents::all_unit;
 pub use world::{FRAME_RATE, Node, Revisions, Scene};
 
 pub(crate) use appearance::{Appearance, PointLook};

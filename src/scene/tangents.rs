@@ -9,6 +9,12 @@ use rayon::prelude::*;
 /// Coordinates beyond this overflow when MikkTSpace multiplies them; such a primitive gets arbitrary tangents.
 const LARGEST_COORDINATE: f32 = 1e12;
 
+/// Whether all normals are as long as 1, as near as rounding brings it: most of a file are, and where all of some thousands are, they stay as they came.
+pub(crate) fn all_unit(normals: &[[f32; 3]]) -> bool {
+    let is_unit = |normal: &[f32; 3]| (Vec3::from(*normal).length_squared() - 1.0).abs() <= 4.0 * f32::EPSILON;
+    normals.iter().fold(true, |all, normal| all & is_unit(normal))
+}
+
 /// Makes every normal a unit vector. One that has no direction becomes the normal of a triangle that uses it.
 pub(super) fn repair_normals(primitive: &mut Primitive) {
     let Some(mut normals) = primitive.normals.take() else {
@@ -19,11 +25,8 @@ pub(super) fn repair_normals(primitive: &mut Primitive) {
         *normal = unit.unwrap_or(Vec3::ZERO).to_array();
         unit.is_none()
     };
-    // As near to 1 as rounding brings it: most normals of a file are, and those that are stay as they came.
-    let is_unit = |normal: &[f32; 3]| (Vec3::from(*normal).length_squared() - 1.0).abs() <= 4.0 * f32::EPSILON;
     let repair_chunk = |chunk: &mut [[f32; 3]]| {
-        let sound = chunk.iter().fold(true, |sound, normal| sound & is_unit(normal));
-        !sound && chunk.iter_mut().fold(false, |directionless, normal| directionless | repair(normal))
+        !all_unit(chunk) && chunk.iter_mut().fold(false, |directionless, normal| directionless | repair(normal))
     };
     if normals.par_chunks_mut(CHUNK).map(repair_chunk).reduce(|| false, |one, other| one | other) {
         for (corners, triangle) in primitive.indices.chunks_exact(3).zip(primitive.triangles()) {

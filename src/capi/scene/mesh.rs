@@ -9,7 +9,9 @@ use super::super::descriptor::{Descriptor, descriptors, read, slice, zero};
 use super::super::status::{Fault, Status};
 use super::super::text::optional_text;
 use super::handle::{Id, SceneHandle, SceneState, add, index_of};
-use crate::scene::{CHUNK, MaterialId, Mesh, MeshId, Primitive, first_endless};
+use crate::scene::{
+    CHUNK, MaterialId, Mesh, MeshId, Primitive, Scene, SceneError, all_finite, all_unit, first_endless, largest_index,
+};
 
 /// 32-bit floats.
 pub const IRRADIA_FORMAT_FLOAT32: u32 = 0;
@@ -85,6 +87,12 @@ descriptors! {
     MeshDescriptor = "mesh descriptor", size_of::<MeshDescriptor>();
 }
 
+/// Values of the host's, and whether all of them were found to be what they must while they were copied, a part at a time, while a near cache had it.
+struct Copied<T> {
+    values: T,
+    sound: bool,
+}
+
 /// N numbers of each vertex.
 ///
 /// # Safety
@@ -92,12 +100,12 @@ descriptors! {
 unsafe fn vertices<const N: usize>(
     attribute: &VertexAttribute,
     count: usize,
-    what: &str,
-    formats: &[u32],
-) -> Result<Option<Vec<[f32; N]>>, Fault> {
+    (what, formats): (&str, &[u32]),
+    sound: fn(&[[f32; N]]) -> bool,
+) -> Result<Copied<Option<Vec<[f32; N]>>>, Fault> {
     zero(attribute.reserved, what)?;
     if attribute.data.is_null() || count == 0 {
-        return Ok(None);
+        return Ok(Copied { values: None, sound: true });
     }
     if !formats.contains(&attribute.format) {
         return Err(Fault::argument(format!("{what} cannot be of format {}", attribute.format)));
@@ -122,76 +130,100 @@ unsafe fn vertices<const N: usize>(
     };
     let number = width / N;
     if attribute.format == IRRADIA_FORMAT_FLOAT32 && stride == width {
-        return Ok(Some(copied(bytes)));
+        let Copied { values, sound } = copied(bytes, sound);
+        return Ok(Copied { values: Some(values), sound });
     }
     let vertex = |vertex: &[u8]| std::array::from_fn(|axis| value(&vertex[axis * number..]));
-    Ok(Some(bytes.par_chunks(stride).map(vertex).collect()))
+    let values: Vec<_> = bytes.par_chunks(stride).map(vertex).collect();
+    let sound = values.par_chunks(CHUNK).all(sound);
+    Ok(Copied { values: Some(values), sound })
 }
 
 /// All values in their order, on all threads: what takes longest is that the system hands out fresh memory.
-fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8]) -> Vec<T> {
+fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8], sound: impl Fn(&[T]) -> bool + Sync) -> Copied<Vec<T>> {
     let mut values: Vec<T> = bytemuck::zeroed_vec(bytes.len() / size_of::<T>());
     let (chunks, parts) = (values.par_chunks_mut(CHUNK), bytes.par_chunks(CHUNK * size_of::<T>()));
-    chunks.zip(parts).for_each(|(values, bytes)| bytemuck::cast_slice_mut(values).copy_from_slice(bytes));
-    values
+    let copy = |(values, bytes): (&mut [T], &[u8])| {
+        bytemuck::cast_slice_mut(values).copy_from_slice(bytes);
+        sound(values)
+    };
+    let sound = chunks.zip(parts).map(copy).reduce(|| true, |one, other| one & other);
+    Copied { values, sound }
 }
 
-fn check_finite<const N: usize>(values: Option<&Vec<[f32; N]>>, what: &str) -> Result<(), Fault> {
-    let bad = values.and_then(|values| first_endless(values));
-    bad.map_or(Ok(()), |vertex| Err(Fault::argument(format!("{what} of vertex {vertex} are not finite"))))
+/// N finite numbers of each vertex, if it has them.
+///
+/// # Safety
+/// As [`vertices`].
+unsafe fn finite<const N: usize>(
+    attribute: &VertexAttribute,
+    count: usize,
+    what: &str,
+) -> Result<Option<Vec<[f32; N]>>, Fault> {
+    let any = &[IRRADIA_FORMAT_FLOAT32, IRRADIA_FORMAT_UNORM8, IRRADIA_FORMAT_UNORM16];
+    // SAFETY: the caller's.
+    let Copied { values, sound } = unsafe { vertices(attribute, count, (what, any), all_finite) }?;
+    let bad = values.as_ref().filter(|_| !sound).and_then(|values| first_endless(values));
+    bad.map_or(Ok(values), |vertex| Err(Fault::argument(format!("{what} of vertex {vertex} are not finite"))))
 }
 
 /// # Safety
 /// `given` is what the header asks for.
-unsafe fn primitive(given: &PrimitiveDescriptor) -> Result<Primitive, Fault> {
+unsafe fn primitive(given: &PrimitiveDescriptor) -> Result<Copied<Primitive>, Fault> {
     let (count, floats) = (given.vertex_count, &[IRRADIA_FORMAT_FLOAT32][..]);
-    let any = &[IRRADIA_FORMAT_FLOAT32, IRRADIA_FORMAT_UNORM8, IRRADIA_FORMAT_UNORM16][..];
     let material = MaterialId(index_of(given.material, "material")?);
     // SAFETY: the caller's.
-    let positions = unsafe { vertices::<3>(&given.positions, count, "positions", floats) }?;
-    let positions = positions.ok_or_else(|| Fault::argument("a primitive has no positions"))?;
+    let placed = unsafe { vertices::<3>(&given.positions, count, ("positions", floats), all_finite) }?;
+    let positions = placed.values.ok_or_else(|| Fault::argument("a primitive has no positions"))?;
     let vertex_count = u32::try_from(count).map_err(|_| Fault::argument("a primitive has more than 2³² vertices"))?;
+    let within = |indices: &[u32]| largest_index(indices) < vertex_count;
     let indices = match (given.indices.is_null(), given.index_format) {
-        (true, _) => (0..vertex_count).collect(),
+        (true, _) => Copied { values: (0..vertex_count).collect(), sound: true },
         (_, IRRADIA_INDEX_UINT32) => {
             // SAFETY: the caller's.
             let long = unsafe { slice(given.indices.cast::<u32>(), given.index_count, "indices") }?;
-            copied(bytemuck::cast_slice(long))
+            copied(bytemuck::cast_slice(long), within)
         }
         (_, IRRADIA_INDEX_UINT16) => {
             // SAFETY: the caller's.
             let short = unsafe { slice(given.indices.cast::<u16>(), given.index_count, "indices") }?;
-            short.iter().map(|&index| u32::from(index)).collect()
+            let long: Vec<u32> = short.iter().map(|&index| u32::from(index)).collect();
+            let sound = within(&long);
+            Copied { values: long, sound }
         }
         (_, other) => {
             return Err(Fault::argument(format!("the index format is {other}; write one of IRRADIA_INDEX_…")));
         }
     };
     // SAFETY: the caller's.
-    let primitive = unsafe {
+    let normals = unsafe { vertices(&given.normals, count, ("normals", floats), all_unit) }?;
+    // SAFETY: the caller's.
+    let values = unsafe {
         Primitive {
             positions,
-            normals: vertices(&given.normals, count, "normals", floats)?,
-            tangents: vertices(&given.tangents, count, "tangents", floats)?,
+            normals: normals.values,
+            // Where they are used they are looked at.
+            tangents: vertices(&given.tangents, count, ("tangents", floats), |_| true)?.values,
             texcoords: [
-                vertices(&given.texcoords[0], count, "texture coordinates", any)?,
-                vertices(&given.texcoords[1], count, "texture coordinates", any)?,
+                finite(&given.texcoords[0], count, "texture coordinates")?,
+                finite(&given.texcoords[1], count, "texture coordinates")?,
             ],
-            colors: vertices(&given.colors, count, "colours", any)?,
-            indices,
+            colors: finite(&given.colors, count, "colours")?,
+            indices: indices.values,
             material,
             source_bytes: 0,
         }
     };
-    check_finite(primitive.texcoords[0].as_ref(), "texture coordinates")?;
-    check_finite(primitive.texcoords[1].as_ref(), "texture coordinates")?;
-    check_finite(primitive.colors.as_ref(), "colours")?;
-    Ok(primitive)
+    Ok(Copied { values, sound: placed.sound && normals.sound && indices.sound })
 }
 
 /// # Safety
 /// `descriptor` is what the header asks for, or null, which is a fault.
-unsafe fn mesh(state: &mut SceneState, descriptor: *const MeshDescriptor) -> Result<Mesh, Fault> {
+unsafe fn take_mesh(
+    state: &mut SceneState,
+    descriptor: *const MeshDescriptor,
+    take: impl FnOnce(&mut Scene, Mesh, bool) -> Result<MeshId, SceneError> + Send,
+) -> Result<usize, Fault> {
     // SAFETY: the caller's.
     let given = unsafe { read(descriptor) }?;
     // SAFETY: the caller's.
@@ -218,14 +250,16 @@ unsafe fn mesh(state: &mut SceneState, descriptor: *const MeshDescriptor) -> Res
     });
     let descriptors = descriptors.collect::<Result<Vec<_>, Fault>>()?;
     let shared = Sent(descriptors);
-    state.work(move |_| {
+    state.work(move |scene| {
         let Sent(descriptors) = { shared };
-        let mut primitives = Vec::with_capacity(descriptors.len());
+        let (mut primitives, mut sound) = (Vec::with_capacity(descriptors.len()), true);
         for descriptor in &descriptors {
             // SAFETY: the caller's; the host's memory stays as it is during the call.
-            primitives.push(unsafe { primitive(descriptor) }?);
+            let Copied { values, sound: well } = unsafe { primitive(descriptor) }?;
+            primitives.push(values);
+            sound &= well;
         }
-        Ok(Mesh { name, primitives })
+        Ok(take(scene, Mesh { name, primitives }, sound)?.0)
     })
 }
 
@@ -246,13 +280,8 @@ pub unsafe extern "C" fn irradia_scene_add_mesh(
     descriptor: *const MeshDescriptor,
     id: *mut Id,
 ) -> Status {
-    let copy = |state: &mut SceneState| {
-        // SAFETY: the host's pointers are what the header asks for.
-        let mesh = unsafe { mesh(state, descriptor) }?;
-        Ok(state.work(|scene| scene.add_host_mesh(mesh))?.0)
-    };
-    // SAFETY: as above.
-    unsafe { add(scene, id, copy) }
+    // SAFETY: the host's pointers are what the header asks for.
+    unsafe { add(scene, id, |state| take_mesh(state, descriptor, Scene::add_host_mesh)) }
 }
 
 /// Replaces a mesh wherever it stands, for instance by one whose vertices moved. It has as many primitives as before; anything else may differ.
@@ -265,10 +294,9 @@ pub unsafe extern "C" fn irradia_scene_set_mesh(
     call(|border| {
         // SAFETY: the host's pointers are what the header asks for.
         let state = unsafe { border.enter(scene) }?;
-        let index = index_of(id, "mesh")?;
+        let id = MeshId(index_of(id, "mesh")?);
+        let replace = |scene: &mut Scene, mesh, sound| scene.set_host_mesh(id, mesh, sound).map(|()| id);
         // SAFETY: as above.
-        let mesh = unsafe { mesh(state, descriptor) }?;
-        state.work(|scene| scene.set_host_mesh(MeshId(index), mesh))?;
-        Ok(())
+        unsafe { take_mesh(state, descriptor, replace) }.map(|_| ())
     })
 }
