@@ -212,6 +212,9 @@ pub unsafe extern "C" fn irradia_render(
         let view = match (own, name) {
             (Some(_), Some(_)) => return Err(Fault::argument("the frame has both a camera and the name of one")),
             (Some(view), None) => view,
+            (None, name) if scene.nodes().iter().any(|node| node.camera.is_some()) => {
+                shared.workers.listen(|| scene.camera_view(name))?
+            }
             // To find a view of a scene that has none is work for all threads.
             (None, name) => shared.run(|| scene.camera_view(name))?,
         };
