@@ -142,6 +142,7 @@ unsafe fn vertices<const N: usize>(
 /// All values in their order, on all threads: what takes longest is that the system hands out fresh memory.
 fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8], sound: impl Fn(&[T]) -> bool + Sync) -> Copied<Vec<T>> {
     let mut values: Vec<T> = bytemuck::zeroed_vec(bytes.len() / size_of::<T>());
+    ask_for_large_pages(&mut values);
     let (chunks, parts) = (values.par_chunks_mut(CHUNK), bytes.par_chunks(CHUNK * size_of::<T>()));
     let copy = |(values, bytes): (&mut [T], &[u8])| {
         bytemuck::cast_slice_mut(values).copy_from_slice(bytes);
@@ -149,6 +150,24 @@ fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8], sound: impl Fn(&[T]) -> 
     };
     let sound = chunks.zip(parts).map(copy).reduce(|| true, |one, other| one & other);
     Copied { values, sound }
+}
+
+/// Most of what a copy into fresh memory takes is the system's, which hands it out by pages of 4 KiB unless it is asked for larger ones.
+fn ask_for_large_pages<T>(values: &mut [T]) {
+    #[cfg(target_os = "linux")]
+    {
+        const LARGE: usize = 2 << 20;
+        let bytes = size_of_val(values);
+        let before = values.as_ptr().cast::<u8>().align_offset(LARGE);
+        let whole = bytes.saturating_sub(before) / LARGE * LARGE;
+        if whole > 0 {
+            let start = values.as_mut_ptr().wrapping_byte_add(before).cast();
+            // SAFETY: these bytes are of `values`; the advice changes nothing of what they hold. A system that knows no such pages refuses it, which loses nothing.
+            let _ = unsafe { rustix::mm::madvise(start, whole, rustix::mm::Advice::LinuxHugepage) };
+        }
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = values;
 }
 
 /// N finite numbers of each vertex, if it has them.
