@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::blocks::{assert_close, mean};
 use super::invariance::transformed;
 use super::path_probe::{Ask, Tracer, sphere, turned};
 use super::probe::{Probe, probe};
@@ -59,10 +60,6 @@ fn specular_of(session: &Session, scene: &Scene, settings: &Settings, camera: &C
     let asked = FrameRequest { image: false, ..request(SIZE, camera.clone(), &[Slot::Specular]) };
     let frame = session.render(scene, settings, &asked);
     frame.slots[&Slot::Specular].pixels.iter().map(|pixel| DVec3::from(pixel.map(f64::from))).collect()
-}
-
-fn mean(pixels: &[DVec3]) -> DVec3 {
-    pixels.iter().sum::<DVec3>() / pixels.len() as f64
 }
 
 #[test]
@@ -175,24 +172,6 @@ fn every_level_holds_all_light() {
         let most = if buffer == 0 { 5e-3 } else { 0.015 };
         assert!((flux / whole - 1.0).abs().max_element() < most, "{buffer}, {side}: {flux} of {whole}");
     }
-}
-
-#[track_caller]
-fn assert_close(what: &str, found: &[DVec3], truth: &[DVec3], most: f64, noise: f64) {
-    let ratio = mean(found).element_sum() / mean(truth).element_sum();
-    let blocks = |pixels: &[DVec3]| -> Vec<f64> {
-        let block = |index: usize| {
-            let [row, column] = [8 * (index / 8), 8 * (index % 8)];
-            let pixel = |p: usize| pixels[(row + p / 8) * SIZE[0] as usize + column + p % 8];
-            (0..64).map(|p| pixel(p).element_sum()).sum::<f64>() / 192.0
-        };
-        (0..48).map(block).collect()
-    };
-    let (found, truth) = (blocks(found), blocks(truth));
-    let squares: f64 = truth.iter().map(|block| block.powi(2)).sum();
-    let error = (found.iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / squares).sqrt();
-    println!("{what}: mean {ratio:.4}, blocks {error:.4}");
-    assert!((ratio - 1.0).abs() < most && error < noise, "{what}: mean {ratio}, blocks {error}");
 }
 
 /// The slot by paths of the light that the settings say.

@@ -6,6 +6,7 @@
 
 pub(crate) mod against_paths;
 mod bench_slots;
+mod blocks;
 mod bvh;
 mod bvh_closed;
 mod bvh_speed;

@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use glam::{DAffine3, DVec3};
 
 use super::against_paths::passes_run;
+use super::blocks::against;
 use super::invariance::{difference, transformed};
 use super::path_probe::{Ask, Tracer};
 use super::probe::{Probe, Vpl, probe};
@@ -153,23 +154,6 @@ fn by_paths(session: &Session, scene: &Scene, camera: &CameraView, settings: &Se
     Tracer::new(session).trace(scene, &ask).slot(Slot::Specular)
 }
 
-/// The ratio of the means, and the error of blocks of 8×8 pixels over the root of their mean square.
-fn against(found: &ColorImage, truth: &[DVec3]) -> (f64, f64) {
-    let found: Vec<DVec3> = found.pixels.iter().map(|pixel| DVec3::from(pixel.map(f64::from))).collect();
-    let blocks = |pixels: &[DVec3]| -> Vec<f64> {
-        let block = |index: usize| {
-            let [row, column] = [8 * (index / 8), 8 * (index % 8)];
-            let pixel = |p: usize| pixels[(row + p / 8) * SIZE[0] as usize + column + p % 8];
-            (0..64).map(|p| pixel(p).element_sum()).sum::<f64>() / 192.0
-        };
-        (0..48).map(block).collect()
-    };
-    let (found, truth) = (blocks(&found), blocks(truth));
-    let squares: f64 = truth.iter().map(|block| block.powi(2)).sum();
-    let error = (found.iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / squares).sqrt();
-    (found.iter().sum::<f64>() / truth.iter().sum::<f64>(), error)
-}
-
 /// A room of diffuse walls, one of them of this metal, seen from aside.
 fn metal_wall(roughness: f32) -> (Scene, CameraView) {
     let mut scene = Scene::empty("metal wall");
@@ -198,7 +182,9 @@ fn reflections_are_those_of_paths_of_one_bounce() {
     for (name, scene, camera, mean_bound, error_bound) in cases {
         let settings = set(&[]);
         let truth = by_paths(&session, &scene, &camera, &settings, 128);
-        let (ratio, error) = against(&specular_of(&session, &scene, &settings, &camera), &truth);
+        let found = specular_of(&session, &scene, &settings, &camera);
+        let found: Vec<DVec3> = found.pixels.iter().map(|pixel| DVec3::from(pixel.map(f64::from))).collect();
+        let (ratio, error) = against(&found, &truth);
         println!("{name}: mean {ratio:.3}, blocks {error:.3}");
         if (ratio - 1.0).abs() >= mean_bound || error >= error_bound {
             wrong.push(format!("{name}: {ratio} {error}"));

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::{DAffine3, DVec3};
 
+use super::blocks::{assert_close, mean};
 use super::path_probe::{Ask, Tracer};
 use super::scenes::{add_light, box_faces, builtin, closed_box, floor, lambert, place, quad, request, view};
 use super::session::Session;
@@ -32,10 +33,6 @@ fn pixels(frame: &Frame, slot: Slot) -> Vec<DVec3> {
 fn slots(session: &Session, scene: &Scene, settings: &Settings, camera: &CameraView) -> Frame {
     let asked = request(SIZE, camera.clone(), &[Slot::Direct, Slot::Specular]);
     session.render(scene, settings, &FrameRequest { image: false, ..asked })
-}
-
-fn mean(pixels: &[DVec3]) -> DVec3 {
-    pixels.iter().sum::<DVec3>() / pixels.len() as f64
 }
 
 fn mirror() -> Material {
@@ -123,25 +120,6 @@ fn by_paths(session: &Session, scene: &Scene, camera: &CameraView, samples: u32)
     };
     let traced = Tracer::new(session).trace(scene, &ask);
     [Slot::Direct, Slot::Specular].map(|slot| traced.slot(slot))
-}
-
-#[track_caller]
-fn assert_close(what: &str, found: &[DVec3], truth: &[DVec3], most: f64, noise: f64) {
-    let ratio = mean(found).element_sum() / mean(truth).element_sum();
-    let blocks = |pixels: &[DVec3]| -> Vec<f64> {
-        let block = |index: usize| {
-            let [row, column] = [8 * (index / 8), 8 * (index % 8)];
-            let pixel = |p: usize| pixels[(row + p / 8) * SIZE[0] as usize + column + p % 8];
-            (0..64).map(|p| pixel(p).element_sum()).sum::<f64>() / 192.0
-        };
-        (0..48).map(block).collect()
-    };
-    let (found, truth) = (blocks(found), blocks(truth));
-    // Over what there is: most of a picture may show no mirror.
-    let squares: f64 = truth.iter().map(|block| block.powi(2)).sum();
-    let error = (found.iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / squares).sqrt();
-    println!("{what}: mean {ratio:.4}, blocks {error:.4}");
-    assert!((ratio - 1.0).abs() < most && error < noise, "{what}: mean {ratio}, blocks {error}");
 }
 
 #[test]
