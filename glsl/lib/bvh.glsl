@@ -119,7 +119,10 @@ bool meets_triangle(uint place, PreparedRay ray, bool to_surface, inout Hit hit)
     vec3 z = vec3(dot(a, ray.shear_z), dot(b, ray.shear_z), dot(c, ray.shear_z));
     float distance = dot(shares, z);
     float end = to_surface ? hit.distance * END : hit.distance;
-    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > ray.start && distance < end;
+    // Of those that are met at the same distance the first of the host's list counts, in whatever order trees hold them; NO_TRIANGLE + 1 is 0.
+    uint number = floatBitsToUint(corner0.w);
+    bool first = number + 1u < hit.triangle + 1u;
+    bool meets = (least >= 0.0 || greatest <= 0.0) && distance > ray.start && (distance < end || first && distance == end);
     // How near the ray's start rounding may matter, a power of two by the triangle's size (src/scene/bvh.rs).
     float doubtful = uintBitsToFloat(floatBitsToUint(corner1.w) & 0x7f800000u) * ray.slowness;
     if (WIDE != 0u && meets && distance < doubtful) {
@@ -133,15 +136,15 @@ bool meets_triangle(uint place, PreparedRay ray, bool to_surface, inout Hit hit)
             distance = known.y < slack ? known.x : distance;
             slack = min(slack, known.y);
         }
-        meets = distance > slack && distance < end;
+        meets = distance > slack && (distance < end || first && distance == end);
     }
 #ifdef BVH_ACCEPTS_HITS
     if (meets && (floatBitsToUint(corner1.w) & 1u) != 0u) {
-        meets = accepts_hit(floatBitsToUint(corner0.w), shares.yz);
+        meets = accepts_hit(number, shares.yz);
     }
 #endif
     if (meets) {
-        hit = Hit(distance, shares.yz, floatBitsToUint(corner0.w));
+        hit = Hit(distance, shares.yz, number);
     }
     return meets;
 }

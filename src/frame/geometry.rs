@@ -1,10 +1,9 @@
 //! Draw lists: which instances a pass draws, with which vertex streams, in which groups.
 
-use std::sync::Arc;
-
 use ash::vk;
 
-use super::scene_data::{DrawnInstance, SceneData, Stream};
+use super::mesh_data::Stream;
+use super::scene_data::{DrawnInstance, SceneData};
 use crate::graph::{Dependence, DrawCall, DrawGroup, DrawList, Graph, hash_of};
 use crate::shaders::types;
 
@@ -25,13 +24,13 @@ impl Geometry {
             graph.import_buffer::<f32>("scene.positions", &data.meshes.positions.buffer, instance_key, placed);
         let materials = graph.import_buffer::<types::Material>(
             "scene.materials",
-            &data.materials,
+            data.materials.records(),
             material_key,
             Dependence::MATERIALS,
         );
         let uses = graph.import_buffer::<types::MaterialTextures>(
             "scene.material_textures",
-            &data.material_textures,
+            data.materials.uses(),
             material_key,
             Dependence::MATERIALS,
         );
@@ -169,7 +168,7 @@ pub(crate) fn draw_list(
     DrawList {
         vertices: attributes.streams(data).into_iter().map(|(_, _, stream)| stream.buffer).collect(),
         indices: data.meshes.indices.clone(),
-        materials: data.texture_sets.as_ref().filter(|_| by_material).map(|sets| Arc::clone(&sets.sets)),
+        materials: data.materials.sets().filter(|_| by_material).cloned(),
         groups,
         key,
         dependence: Dependence::GEOMETRY,

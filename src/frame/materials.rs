@@ -2,46 +2,94 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-
+use super::sent_list::SentList;
 use super::textures::{MaterialTextureSets, TextureArrays, slots_of};
 use crate::scene::{Alpha, Cutout, Material, Primitive, Scene, cutout};
 use crate::shaders::types;
-use crate::vulkan::{Buffer, Device, Pipelines, VulkanError, buffer_with};
-
-/// What alpha leaves of each material where no vertex colours are.
-pub(super) fn cutouts_of(scene: &Scene) -> Vec<Cutout> {
-    scene.materials().iter().map(|material| cutout(material, scene.textures(), false)).collect()
-}
+use crate::vulkan::{Buffer, Device, MaterialSets, Pipelines, VulkanError};
 
 /// Whether alpha may cut a primitive out point by point.
 pub(super) fn is_cut(of_material: Cutout, masked: bool, primitive: &Primitive) -> bool {
     of_material == Cutout::PerPoint || masked && primitive.colors.is_some()
 }
 
-/// The list of materials, that of how they read textures, and a set of bindings for each.
-type Materials = (Arc<Buffer>, Arc<Buffer>, Option<MaterialTextureSets>);
+/// The materials, how they read textures, the textures, and a set of bindings for each material.
+pub(crate) struct MaterialData {
+    records: SentList<types::Material>,
+    uses: SentList<types::MaterialTextures>,
+    textures: Option<MaterialTextureSets>,
+    /// What alpha leaves of the surfaces of each where no vertex colours are.
+    pub(super) cutouts: Vec<Cutout>,
+    /// Bytes of textures that were sent so far.
+    sent_texels: u64,
+}
 
-pub(super) fn upload_materials(
-    device: &Arc<Device>,
-    pipelines: &Pipelines,
-    scene: &Scene,
-) -> Result<Materials, VulkanError> {
-    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    let records: Vec<types::Material> = scene.materials().iter().map(material_record).collect();
-    let materials = buffer_with(device, "scene.materials", bytemuck::cast_slice(&records), usage)?;
-    // Vertex colours alone may cut surfaces out: the programs that do so bind textures too.
-    let reads =
-        !scene.textures().is_empty() || scene.materials().iter().any(|material| material.alpha != Alpha::Opaque);
-    let (uses, sets) = if reads {
-        let arrays = TextureArrays::upload(device, scene)?;
-        let uses: Vec<types::MaterialTextures> =
-            scene.materials().iter().map(|material| arrays.uses_of(material)).collect();
-        (uses, Some(MaterialTextureSets::new(device, pipelines, scene, arrays)?))
-    } else {
-        (Vec::new(), None)
-    };
-    Ok((materials, buffer_with(device, "scene.material_textures", bytemuck::cast_slice(&uses), usage)?, sets))
+impl MaterialData {
+    pub(super) fn upload(
+        device: &Arc<Device>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+    ) -> Result<MaterialData, VulkanError> {
+        let mut data = MaterialData {
+            records: SentList::new(device, "scene.materials", Vec::new())?,
+            uses: SentList::new(device, "scene.material_textures", Vec::new())?,
+            textures: None,
+            cutouts: Vec::new(),
+            sent_texels: 0,
+        };
+        data.update(device, pipelines, scene)?;
+        Ok(data)
+    }
+
+    /// Sends the materials that changed, and textures that are new.
+    pub(super) fn update(
+        &mut self,
+        device: &Arc<Device>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+    ) -> Result<(), VulkanError> {
+        let materials = scene.materials();
+        self.records.update(device, materials.iter().map(material_record).collect())?;
+        // Vertex colours alone may cut surfaces out: the programs that do so bind textures too.
+        let reads = !scene.textures().is_empty() || materials.iter().any(|material| material.alpha != Alpha::Opaque);
+        let mut uses = Vec::new();
+        let held = self.textures.take();
+        if reads {
+            let (arrays, sent) = TextureArrays::upload(device, scene, held.as_ref())?;
+            self.sent_texels += sent;
+            uses.extend(materials.iter().map(|material| arrays.uses_of(material)));
+            self.textures = Some(MaterialTextureSets::new(device, pipelines, scene, arrays)?);
+        }
+        self.uses.update(device, uses)?;
+        self.cutouts = materials.iter().map(|material| cutout(material, scene.textures(), false)).collect();
+        Ok(())
+    }
+
+    /// A record for each material.
+    pub(super) fn records(&self) -> &Arc<Buffer> {
+        &self.records.buffer
+    }
+
+    /// How each reads its textures, where any does.
+    pub(super) fn uses(&self) -> &Arc<Buffer> {
+        &self.uses.buffer
+    }
+
+    /// A set of bindings for each, where any reads textures.
+    pub(super) fn sets(&self) -> Option<&Arc<MaterialSets>> {
+        self.textures.as_ref().map(|textures| &textures.sets)
+    }
+
+    /// Bytes that were sent to the device so far.
+    pub(super) fn sent(&self) -> u64 {
+        self.records.sent + self.uses.sent + self.sent_texels
+    }
+
+    /// Device memory, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        let textures = self.textures.as_ref().map_or(0, MaterialTextureSets::bytes);
+        self.records.buffer.bytes() + self.uses.buffer.bytes() + textures
+    }
 }
 
 pub(crate) fn material_record(material: &Material) -> types::Material {

@@ -19,6 +19,7 @@ pub(crate) mod light_set;
 pub(crate) mod light_views;
 pub(crate) mod lobe_albedos;
 pub(crate) mod materials;
+mod mesh_data;
 pub(crate) mod mirrored;
 pub(crate) mod mirrored_light;
 pub(crate) mod octahedral;

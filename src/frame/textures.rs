@@ -22,35 +22,72 @@ struct Layer {
     layer: u32,
 }
 
+/// Textures of one size and encoding.
+struct TextureArray {
+    /// Width, height, sRGB.
+    kind: (u32, u32, bool),
+    /// Of the scene's textures, those in its layers. They never change; more may come.
+    members: Vec<usize>,
+    image: Arc<Image>,
+}
+
 /// All textures of a scene.
 pub(crate) struct TextureArrays {
-    arrays: Vec<Arc<Image>>,
+    arrays: Vec<TextureArray>,
+    /// What a material without a texture of some kind binds in its place.
+    none: Arc<Image>,
     layers: Vec<Layer>,
 }
 
 impl TextureArrays {
-    pub(super) fn upload(device: &Arc<Device>, scene: &Scene) -> Result<TextureArrays, VulkanError> {
+    /// The textures of a scene, with those arrays of `held`, of the same scene, that have no more of them than before; and the bytes of all others.
+    pub(super) fn upload(
+        device: &Arc<Device>,
+        scene: &Scene,
+        held: Option<&MaterialTextureSets>,
+    ) -> Result<(TextureArrays, u64), VulkanError> {
+        let held = held.map(|held| &held.textures);
         let mut groups: BTreeMap<(u32, u32, bool), Vec<usize>> = BTreeMap::new();
         for (index, texture) in scene.textures().iter().enumerate() {
             groups.entry((texture.width, texture.height, texture.srgb)).or_default().push(index);
         }
-        let mut made =
-            TextureArrays { arrays: Vec::new(), layers: vec![Layer { array: 0, layer: 0 }; scene.textures().len()] };
+        let mut sent = 0;
+        let mut array = |name: &str, (width, height, srgb), texels: &[&[u8]]| {
+            let image = image_with(device, name, array_info(width, height, srgb, texels.len()), texels)?;
+            sent += image.bytes();
+            Ok::<_, VulkanError>(image)
+        };
+        let none = match held {
+            Some(held) => held.none.clone(),
+            None => array("scene.textures.none", (1, 1, false), &[&[255; 4]])?,
+        };
+        let mut made = TextureArrays {
+            arrays: Vec::new(),
+            none,
+            layers: vec![Layer { array: 0, layer: 0 }; scene.textures().len()],
+        };
         let most = device.limits().max_image_array_layers as usize;
-        for ((width, height, srgb), members) in groups {
+        for (kind, members) in groups {
             for members in members.chunks(most) {
                 for (layer, &member) in (0..).zip(members) {
                     made.layers[member] = Layer { array: made.arrays.len(), layer };
                 }
-                let texels: Vec<&[u8]> =
-                    members.iter().map(|&member| scene.textures()[member].rgba8.as_slice()).collect();
-                let name = format!("scene.textures.{width}x{height}{}", if srgb { ".srgb" } else { "" });
-                made.arrays.push(image_with(device, &name, array_info(width, height, srgb, texels.len()), &texels)?);
+                let alike = |array: &&TextureArray| array.kind == kind && array.members == members;
+                let held = held.and_then(|held| held.arrays.iter().find(alike));
+                let image = match held {
+                    Some(held) => held.image.clone(),
+                    None => {
+                        let texels: Vec<&[u8]> =
+                            members.iter().map(|&member| scene.textures()[member].rgba8.as_slice()).collect();
+                        let (width, height, srgb) = kind;
+                        let name = format!("scene.textures.{width}x{height}{}", if srgb { ".srgb" } else { "" });
+                        array(&name, kind, &texels)?
+                    }
+                };
+                made.arrays.push(TextureArray { kind, members: members.to_vec(), image });
             }
         }
-        // What a material without a texture of some kind binds in its place.
-        made.arrays.push(image_with(device, "scene.textures.none", array_info(1, 1, false, 1), &[&[255; 4]])?);
-        Ok(made)
+        Ok((made, sent))
     }
 
     /// How `material` reads its textures.
@@ -94,7 +131,7 @@ fn array_info(width: u32, height: u32, srgb: bool, layers: usize) -> ImageInfo {
 /// A descriptor set for each material of a scene that has textures.
 pub(crate) struct MaterialTextureSets {
     pub(crate) sets: Arc<MaterialSets>,
-    arrays: Vec<Arc<Image>>,
+    textures: TextureArrays,
 }
 
 impl MaterialTextureSets {
@@ -104,13 +141,12 @@ impl MaterialTextureSets {
         scene: &Scene,
         textures: TextureArrays,
     ) -> Result<MaterialTextureSets, VulkanError> {
-        let none = textures.arrays.len() - 1;
         let descriptor = |texture: Option<TextureRef>| -> Result<Descriptor, VulkanError> {
-            let place = texture.map(|texture| textures.layers[texture.texture.0].array).unwrap_or(none);
+            let place = texture.map(|texture| textures.layers[texture.texture.0].array);
             let kind = texture
                 .map(|texture| sampler_of(&scene.textures()[texture.texture.0]))
                 .unwrap_or(SamplerKind::NearestClamp);
-            let image = &textures.arrays[place];
+            let image = place.map_or(&textures.none, |place| &textures.arrays[place].image);
             let what = SubresourceView {
                 dim: ImageDim::D2Array,
                 mips: 0..image.info.mips,
@@ -132,11 +168,12 @@ impl MaterialTextureSets {
         }
         // Every program that reads textures declares the same set.
         let layout = pipelines.set_layout(<gbuffer::Textured as BindingSet>::PROGRAM, 1)?;
-        Ok(MaterialTextureSets { sets: Arc::new(MaterialSets::new(device, layout, &sets)?), arrays: textures.arrays })
+        Ok(MaterialTextureSets { sets: Arc::new(MaterialSets::new(device, layout, &sets)?), textures })
     }
 
     pub(super) fn bytes(&self) -> u64 {
-        self.arrays.iter().map(|array| array.bytes()).sum()
+        let arrays = self.textures.arrays.iter().map(|array| array.image.bytes());
+        arrays.sum::<u64>() + self.textures.none.bytes()
     }
 }
 

@@ -6,7 +6,7 @@ use super::rays::{FLOATS, NO_TRIANGLE, Random, Ray, Traced, ray, scene_rays, tra
 use super::session::Session;
 use crate::graph::{Dependence, Graph};
 use crate::renderer::Timing;
-use crate::scene::bvh::{Bvh, BvhTriangle};
+use crate::scene::bvh::{Bvh, BvhTriangle, can_be_hit};
 use crate::shaders::selftest::MaskedHit;
 use crate::shaders::types;
 
@@ -131,6 +131,68 @@ fn hits_are_those_of_all_triangles_one_by_one() {
             assert!(count < 60 || (40..760).contains(&hit_count));
         }
     }
+}
+
+/// What a ray meets does not depend on the tree: not on whether one was built around the triangles as they are or before some moved, nor on which of two that lie in one place comes first in it.
+#[test]
+fn trees_that_were_built_before_something_moved_give_the_same_bits() {
+    let session = Session::open();
+    for (seed, scale) in [(31, 1.0), (32, 1e-6), (33, 1e9)] {
+        let mut random = Random::new(seed);
+        let then = soup(&mut random, 900, scale);
+        let built = Bvh::build(&then);
+        let rays = rays_about(&mut random, 1500, scale);
+        let mut now = then.clone();
+        for triangle in now.iter_mut().step_by(9) {
+            let way = random.point() * 0.05 * scale;
+            let moved = triangle.corners.map(|corner| (Vec3::from(corner) + way).to_array());
+            let moved = BvhTriangle { corners: moved, ..*triangle };
+            // Rounding may give a line an area.
+            if can_be_hit(&moved) == can_be_hit(triangle) {
+                *triangle = moved;
+            }
+        }
+        let refitted = built.refitted(&now).expect("it is a tree for what moved");
+        let same = |bvh: &Bvh| {
+            let Traced { hits, blocked, .. } = trace(&session, bvh, &rays);
+            (bytemuck::cast_slice::<_, u32>(&hits).to_vec(), blocked)
+        };
+        let fresh = same(&Bvh::build(&now));
+        assert!(same(&refitted) == fresh, "seed {seed}: the tree that was there before");
+        assert!(same(&Bvh::build_within(&now, 0)) == fresh, "seed {seed}: the tree of medians");
+        assert!(same(&built) != fresh, "seed {seed}: nothing that rays meet moved");
+        // Back again: nothing is left of the way.
+        let back = built.refitted(&then).expect("nothing moved");
+        assert!(
+            back.nodes == built.nodes
+                && bytemuck::cast_slice::<_, u32>(&back.triangles)
+                    == bytemuck::cast_slice::<[f32; 4], u32>(&built.triangles)
+        );
+    }
+}
+
+#[test]
+fn a_tree_is_built_anew_where_the_old_one_is_none_for_what_moved() {
+    let mut random = Random::new(34);
+    let then: Vec<BvhTriangle> = soup(&mut random, 900, 1.0)
+        .into_iter()
+        .filter(|triangle| triangle.corners.as_flattened().iter().all(|axis| axis.is_finite()))
+        .collect();
+    let built = Bvh::build(&then);
+    let sound = |triangle: &BvhTriangle| triangle.corners[0] != triangle.corners[2];
+    let place = then.iter().position(sound).expect("most are");
+    let mut line = then.clone();
+    line[place].corners[2] = line[place].corners[0];
+    assert!(built.refitted(&line).is_none(), "a triangle has no area any more");
+    let grown = Bvh::build(&line).refitted(&then);
+    assert!(grown.is_none(), "the tree does not hold a triangle that can be hit now");
+    let mut scattered = then.clone();
+    scattered.iter_mut().for_each(|triangle| {
+        let way = random.point() * 3.0;
+        triangle.corners = triangle.corners.map(|corner| (Vec3::from(corner) + way).to_array());
+    });
+    assert!(built.refitted(&scattered).is_none(), "boxes hold everything");
+    assert!(built.refitted(&then[1..]).is_none(), "there are fewer triangles");
 }
 
 #[test]

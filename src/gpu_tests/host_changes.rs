@@ -5,8 +5,8 @@ use glam::{DAffine3, DVec3};
 use super::scenes::{add_light, builtin, closed_box, lambert, place, quad, request, settings_of, view};
 use super::session::Session;
 use crate::method::Error;
-use crate::renderer::{FrameRequest, Progress, Technique};
-use crate::scene::{LightKind, Mesh, MeshId, Node, NodeId, Scene};
+use crate::renderer::{DirectMethod, FrameRequest, Progress, Technique};
+use crate::scene::{LightKind, MaterialId, Mesh, MeshId, Node, NodeId, Scene};
 use crate::shaders::types;
 use crate::slot::Slot;
 use crate::vulkan::VulkanError;
@@ -82,6 +82,56 @@ fn what_changed_is_sent_and_nothing_else() {
     let dimmed = crate::scene::Light { intensity: [1.0; 3], ..scene.lights()[light.0].clone() };
     scene.set_light(light, dimmed).expect("it is sound");
     assert_eq!(renderer.render(&scene, &request).expect("a frame").timings.upload_bytes, 0);
+}
+
+/// Of meshes and materials those that changed are sent; textures never again.
+#[test]
+fn a_changed_mesh_and_a_changed_material_are_sent_alone() {
+    let session = Session::open();
+    let mut scene = builtin("textured");
+    let quads = [0.0, 0.3, 0.6].map(|height: f32| {
+        let corners = [[-0.2, height, 0.2], [0.2, height, 0.2], [0.2, height, -0.2], [-0.2, height, -0.2]];
+        quad(corners, MaterialId(0))
+    });
+    let mesh = scene.add_mesh(Mesh { primitives: quads.to_vec(), ..Mesh::default() }).expect("it is sound");
+    scene.add_node(Node { mesh: Some(mesh), ..Node::default() }).expect("it is sound");
+    let mut settings = settings_of(Technique::Direct, &[]);
+    settings.methods.direct = DirectMethod::Traced;
+    let request = request([48, 32], scene.camera_view(None).expect("a view"), &[Slot::Direct]);
+    let mut renderer = session.renderer(&settings);
+    let first = renderer.render(&scene, &request).expect("a frame");
+
+    let mut moved = scene.meshes()[mesh.0].clone();
+    moved.primitives[1].positions.iter_mut().for_each(|position| position[1] += 0.2);
+    scene.set_mesh(mesh, moved.clone()).expect("it is sound");
+    let after = renderer.render(&scene, &request).expect("a frame");
+    // Three quads: 18 indices of 4 bytes; of vertices at most one a corner of each triangle, 12 bytes of position, 8 of normal and of tangent, 16 of coordinates, 4 of colour. Their
+    // three instances besides.
+    let most = 18 * (4 + 12 + 8 + 8 + 16 + 4) + 3 * size_of::<types::Instance>() as u64;
+    assert!((1..=most).contains(&after.timings.upload_bytes), "{} of {most}", after.timings.upload_bytes);
+    assert!(after.slots != first.slots && after.slots == session.render(&scene, &settings, &request).slots);
+
+    let mut material = scene.materials()[0].clone();
+    material.base_color = [0.2, 0.9, 0.3, 1.0];
+    scene.set_material(MaterialId(0), material).expect("it is sound");
+    let painted = renderer.render(&scene, &request).expect("a frame");
+    assert_eq!(painted.timings.upload_bytes, size_of::<types::Material>() as u64);
+    assert!(painted.slots != after.slots && painted.slots == session.render(&scene, &settings, &request).slots);
+
+    // Another number of triangles, another set of attributes: all is sent, and shows.
+    moved.primitives[0].indices.truncate(3);
+    moved.primitives[2].colors = Some(vec![[0.5; 4]; 4]);
+    scene.set_mesh(mesh, moved).expect("it is sound");
+    let other = renderer.render(&scene, &request).expect("a frame");
+    assert!(other.timings.upload_bytes > most);
+    assert!(other.slots != painted.slots && other.slots == session.render(&scene, &settings, &request).slots);
+
+    let mut texture = scene.textures()[0].clone();
+    texture.rgba8.fill(77);
+    let bytes = texture.rgba8.len() as u64;
+    scene.add_texture(texture).expect("it is sound");
+    let more = renderer.render(&scene, &request).expect("a frame");
+    assert!(more.timings.upload_bytes > bytes && more.slots == other.slots);
 }
 
 #[test]

@@ -62,9 +62,25 @@ impl BvhTriangle {
         let size = (b - a).abs().max((c - a).abs()).max_element();
         (size * DOUBTFUL).to_bits() & 0x7F80_0000
     }
+
+    /// As it stands in [`Bvh::triangles`]; `number`: its index in the list.
+    pub(super) fn texels(&self, number: u32) -> [[f32; 4]; 3] {
+        let words = [number, self.flags | self.doubtful(), self.plane().to_bits()];
+        [0, 1, 2].map(|corner| {
+            let [x, y, z] = self.corners[corner];
+            [x, y, z, f32::from_bits(words[corner])]
+        })
+    }
+
+    /// Whether it is, to the bit, what these texels hold.
+    pub(super) fn is_held_by(&self, texels: &[[f32; 4]]) -> bool {
+        let corners = self.corners.iter().zip(texels).all(|(corner, texel)| corner[..] == texel[..3]);
+        corners && texels[1][3].to_bits() & 0x807F_FFFF == self.flags
+    }
 }
 
 /// The hierarchy as the shader reads it.
+#[derive(Clone)]
 pub(crate) struct Bvh {
     /// For a `usamplerBuffer` of format rgba32ui, five texels a node, and one whose first word says how far rays start from surfaces at least. The root is node 0; there is always one.
     pub(crate) nodes: Vec<[u32; 4]>,
@@ -97,12 +113,8 @@ impl Bvh {
         }
         let tree = wide(&sound, deepest);
         let texels = tree.primitive_indices.iter().flat_map(|&place| {
-            let triangle = &triangles[numbers[place as usize] as usize];
-            let words = [numbers[place as usize], triangle.flags | triangle.doubtful(), triangle.plane().to_bits()];
-            [0, 1, 2].map(|corner| {
-                let [x, y, z] = triangle.corners[corner];
-                [x, y, z, f32::from_bits(words[corner])]
-            })
+            let number = numbers[place as usize];
+            triangles[number as usize].texels(number)
         });
         let mut bvh = Bvh { triangles: texels.collect(), nodes: bytemuck::cast_slice(&tree.nodes).to_vec() };
         let corners = || triangles.iter().filter(|triangle| can_be_hit(triangle)).flat_map(|triangle| triangle.corners);
@@ -146,7 +158,8 @@ impl Bvh {
     }
 }
 
-fn can_be_hit(triangle: &BvhTriangle) -> bool {
+/// Whether it has an area, and lies where areas can be reckoned with.
+pub(crate) fn can_be_hit(triangle: &BvhTriangle) -> bool {
     let [a, b, c] = triangle.corners.map(|corner| Vec3::from(corner).as_dvec3());
     let in_reach = triangle.corners.iter().flatten().all(|axis| axis.abs() <= FARTHEST);
     in_reach && (b - a).cross(c - a) != DVec3::ZERO

@@ -3,7 +3,7 @@
 use super::{Alpha, Material, Texture};
 
 /// What its alpha leaves of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Cutout {
     Everything,
     Nothing,

@@ -21,6 +21,7 @@ impl Scene {
             return Err(self.invalid("texture", &texture.name, fault));
         }
         self.revisions.materials += 1;
+        self.revisions.textures += 1;
         self.textures.push(texture);
         Ok(TextureId(self.textures.len() - 1))
     }

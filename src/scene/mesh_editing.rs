@@ -70,6 +70,7 @@ impl Scene {
         self.shapes.push(mesh.primitives.iter().map(|_| OnceLock::new()).collect());
         self.meshes.push(mesh);
         self.count_mesh();
+        self.mesh_changes.push(self.revisions.meshes);
         MeshId(self.meshes.len() - 1)
     }
 
@@ -80,8 +81,14 @@ impl Scene {
         let lights = emits(&self.meshes[id.0]) || emits(&mesh);
         self.meshes[id.0] = mesh;
         self.count_mesh();
+        self.mesh_changes[id.0] = self.revisions.meshes;
         self.revisions.lights += u64::from(lights);
         self.forget_bounds();
+    }
+
+    /// When each mesh changed last, in [`Revisions::meshes`](super::Revisions::meshes).
+    pub(crate) fn mesh_changes(&self) -> &[u64] {
+        &self.mesh_changes
     }
 
     pub(super) fn count_mesh(&mut self) {

@@ -56,6 +56,7 @@ mod material;
 mod mesh;
 mod mesh_editing;
 pub(crate) mod rays;
+mod refit;
 mod sampling;
 mod shining;
 mod split;

@@ -20,6 +20,7 @@ impl Scene {
         }
         self.extent.take();
         self.count_mesh();
+        self.mesh_changes.fill(self.revisions.meshes);
     }
 }
 

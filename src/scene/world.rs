@@ -46,6 +46,8 @@ pub struct Revisions {
     pub meshes: u64,
     /// Materials and textures.
     pub materials: u64,
+    /// Textures alone. Counted in `materials` too.
+    pub textures: u64,
     /// Punctual lights, emissive surfaces (their radiance and where they stand), the sky.
     pub lights: u64,
     /// Cameras and where they stand.
@@ -79,6 +81,8 @@ pub struct Scene {
     /// What loading had to leave out or change, a sentence each.
     pub warnings: Vec<String>,
     pub(super) meshes: Vec<Mesh>,
+    /// [`Revisions::meshes`] when each mesh changed last.
+    pub(super) mesh_changes: Vec<u64>,
     /// Of each primitive of each mesh.
     pub(super) shapes: Vec<Vec<OnceLock<Shape>>>,
     pub(super) materials: Vec<Material>,
@@ -211,6 +215,7 @@ impl Scene {
             description: _,
             warnings: _,
             meshes,
+            mesh_changes: _,
             shapes: _,
             materials,
             textures,

@@ -39,9 +39,29 @@ impl Looks {
         hash_of(&(scene.identity(), scene.revisions().materials, facts.vertex_colors))
     }
 
-    pub(super) fn new(device: &Arc<Device>, scene: &Scene, facts: &Facts) -> Result<Looks, VulkanError> {
+    /// Of a scene as it is now; the textures of `held` where they are the same.
+    pub(super) fn update(
+        device: &Arc<Device>,
+        scene: &Scene,
+        facts: &Facts,
+        held: Option<&Looks>,
+    ) -> Result<Looks, VulkanError> {
         let key = Looks::key(scene, facts);
-        let texels = Texels::new(scene.textures())?;
+        let textures_key = hash_of(&(scene.identity(), scene.revisions().textures));
+        let [table, texels] = match held.filter(|held| held.texels.key == textures_key) {
+            Some(held) => [held.table.clone(), held.texels.clone()],
+            None => {
+                let Texels { table, texels } = Texels::new(scene.textures())?;
+                [
+                    Uploaded::new(device, "traced.texture_table", &table, WORDS, textures_key)?,
+                    Uploaded::new(device, "traced.texels", &texels, HALVES, textures_key)?,
+                ]
+            }
+        };
+        let sobol = match held {
+            Some(held) => held.sobol.clone(),
+            None => Uploaded::new(device, "traced.sobol", &sobol_points(), WORDS, hash_of(&"sobol"))?,
+        };
         let all = scene.materials();
         let materials: Vec<types::Material> = all.iter().map(material_record).collect();
         let media: Vec<[f32; 4]> = all.iter().map(Material::medium).collect();
@@ -52,9 +72,9 @@ impl Looks {
             materials: Uploaded::new(device, "traced.materials", &materials, WORDS, key)?,
             media: Uploaded::new(device, "traced.media", &media, FLOATS, key)?,
             uses: Uploaded::new(device, "traced.material_textures", &uses, WORDS, key)?,
-            table: Uploaded::new(device, "traced.texture_table", &texels.table, WORDS, key)?,
-            texels: Uploaded::new(device, "traced.texels", &texels.texels, HALVES, key)?,
-            sobol: Uploaded::new(device, "traced.sobol", &sobol_points(), WORDS, hash_of(&"sobol"))?,
+            table,
+            texels,
+            sobol,
             cutouts: all.iter().map(|material| cutout(material, scene.textures(), facts.vertex_colors)).collect(),
             texture_kinds: all.iter().fold(0, |kinds, material| kinds | texture_kinds(material)),
             diffuse_sides: all.iter().map(diffuse_sides).collect(),

@@ -4,6 +4,7 @@ mod alias_table;
 mod backs;
 mod emissive_cells;
 mod emitters;
+mod flattened;
 mod hierarchy;
 mod lightmap;
 mod looks;

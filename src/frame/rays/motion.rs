@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::triangles::TracedTriangle;
 use crate::scene::{Instance, NodeId, Scene};
 
-/// Boxes that are told apart, as in glsl/particles/touched_links.comp; of more, those are joined whose surface grows least.
+/// Boxes that are told apart, as in glsl/particles/touched_links.comp.
 const MOST_BOXES: usize = 4;
 
 /// Lowest and highest corner, in render space.
@@ -88,7 +88,7 @@ pub(super) fn motion(
     for index in moved.iter().cloned().flatten() {
         triangles[index / 32] |= 1 << (index % 32);
     }
-    let boxes = |state: &[TracedTriangle]| joined(moved.iter().map(|range| around(&state[range.clone()])).collect());
+    let boxes = |state: &[TracedTriangle]| joined(moved.iter().map(|range| around(&state[range.clone()])));
     Some(Motion { from, before: boxes(before.1), after: boxes(after.1), triangles })
 }
 
@@ -110,19 +110,22 @@ fn half_surface([low, high]: Box3) -> f32 {
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-fn joined(mut boxes: Vec<Box3>) -> Vec<Box3> {
-    while boxes.len() > MOST_BOXES {
-        let growth = |&(a, b): &(usize, usize)| {
-            half_surface(union(boxes[a], boxes[b])) - half_surface(boxes[a]) - half_surface(boxes[b])
-        };
-        // Of many, the last ones alone are compared with all: the work stays linear.
-        let last = boxes.len() - 1;
-        let pairs = (0..last).map(|other| (other, last));
-        let (other, _) = pairs.min_by(|a, b| growth(a).total_cmp(&growth(b))).expect("there are several");
-        let taken = boxes.pop().expect("there are several");
-        boxes[other] = union(boxes[other], taken);
+/// As few boxes around them as are told apart: taken one after the other, and whenever there is one too many, those two are joined whose surface grows least.
+fn joined(boxes: impl Iterator<Item = Box3>) -> Vec<Box3> {
+    let mut few: Vec<Box3> = Vec::with_capacity(MOST_BOXES + 1);
+    for one in boxes {
+        few.push(one);
+        if few.len() > MOST_BOXES {
+            let growth = |&(a, b): &(usize, usize)| {
+                half_surface(union(few[a], few[b])) - half_surface(few[a]) - half_surface(few[b])
+            };
+            let pairs = (0..few.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            let (a, b) = pairs.min_by(|a, b| growth(a).total_cmp(&growth(b))).expect("there are several");
+            let taken = few.swap_remove(b);
+            few[a] = union(few[a], taken);
+        }
     }
-    boxes
+    few
 }
 
 #[cfg(test)]
@@ -137,7 +140,7 @@ mod tests {
                 [low, low + 0.5]
             })
             .collect();
-        let few = joined(boxes.clone());
+        let few = joined(boxes.iter().copied());
         assert!(few.len() == MOST_BOXES);
         for [low, high] in boxes {
             assert!(few.iter().any(|[a, b]| a.cmple(low).all() && b.cmpge(high).all()));

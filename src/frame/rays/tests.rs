@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::TracedScene;
 use crate::gpu_tests::scenes::{add_light, builtin};
 use crate::gpu_tests::session::Session;
-use crate::scene::{LightId, LightKind, Node};
+use crate::scene::{Alpha, LightId, LightKind, MaterialId, Node};
 
 #[test]
 fn a_moved_light_makes_no_hierarchy_and_a_moved_thing_no_textures() {
@@ -31,6 +31,28 @@ fn a_moved_light_makes_no_hierarchy_and_a_moved_thing_no_textures() {
     let moved = TracedScene::update(device, &scene, Some(&relit)).expect("it fits the device");
     assert!(!Arc::ptr_eq(&relit.surfaces, &moved.surfaces) && Arc::ptr_eq(&relit.looks, &moved.looks));
     assert_eq!(moved.surfaces_key(), TracedScene::new(device, &scene).expect("it fits the device").surfaces_key());
+}
+
+#[test]
+fn a_changed_material_makes_no_hierarchy_and_no_textures() {
+    let session = Session::open();
+    let device = session.context.shared_device();
+    let mut scene = builtin("textured");
+    let first = TracedScene::new(device, &scene).expect("it fits the device");
+    let mut material = scene.materials()[0].clone();
+    material.base_color[0] *= 0.5;
+    scene.set_material(MaterialId(0), material).expect("it is sound");
+    let painted = TracedScene::update(device, &scene, Some(&first)).expect("it fits the device");
+    assert_ne!(first.looks.materials.key, painted.looks.materials.key);
+    assert_eq!(first.looks.texels.key, painted.looks.texels.key);
+    let keys = |scene: &TracedScene| scene.surfaces.hierarchy().map(|list| list.key);
+    assert_eq!(keys(&first), keys(&painted));
+    // Alpha cuts: other triangles can be hit.
+    let mut material = scene.materials()[0].clone();
+    (material.alpha, material.base_color[3]) = (Alpha::Mask { cutoff: 0.5 }, 0.0);
+    scene.set_material(MaterialId(0), material).expect("it is sound");
+    let cut = TracedScene::update(device, &scene, Some(&painted)).expect("it fits the device");
+    assert_ne!(keys(&painted), keys(&cut));
 }
 
 #[test]

@@ -88,14 +88,15 @@ impl TracedScene {
         let key = Looks::key(scene, &facts);
         let looks = match held.filter(|held| held.looks.key == key) {
             Some(held) => held.looks.clone(),
-            None => Arc::new(Looks::new(device, scene, &facts)?),
+            None => Arc::new(Looks::update(device, scene, &facts, held.map(|held| &*held.looks))?),
         };
-        let surfaces = match held.filter(|held| held.surfaces.key == surfaces_key(scene)) {
-            Some(held) => held.surfaces.clone(),
+        let held_surfaces = held.map(|held| &held.surfaces);
+        let surfaces = match held_surfaces.filter(|held| held.key == surfaces_key(scene)) {
+            Some(held) => held.clone(),
             None => {
-                // Other materials make other particles.
-                let before = held.filter(|held| Arc::ptr_eq(&held.looks, &looks)).map(|held| &*held.surfaces);
-                Arc::new(Surfaces::new(device, scene, &looks, &facts, before)?)
+                let alike = held.is_some_and(|held| Arc::ptr_eq(&held.looks, &looks));
+                let held = (held_surfaces.map(|held| &**held), alike);
+                Arc::new(Surfaces::update(device, scene, &looks, &facts, held)?)
             }
         };
         let (triangles, origin, radius) = (&surfaces.triangles, surfaces.origin, surfaces.radius);
@@ -178,9 +179,10 @@ impl TracedScene {
     pub(crate) fn rays(&self, graph: &mut Graph<'_>) -> SceneRays {
         let (surfaces, looks) = (&*self.surfaces, &*self.looks);
         let (geometry, materials) = (Dependence::GEOMETRY, Dependence::MATERIALS);
+        let [bvh_nodes, bvh_triangles] = surfaces.hierarchy().map(|list| list.texels(graph, geometry));
         SceneRays {
-            bvh_nodes: surfaces.nodes.texels(graph, geometry),
-            bvh_triangles: surfaces.leaves.texels(graph, geometry),
+            bvh_nodes,
+            bvh_triangles,
             corner_colors: surfaces.colors.texels(graph, geometry),
             corner_texcoords: surfaces.texcoords.texels(graph, geometry),
             corner_tangents: surfaces.tangents.texels(graph, geometry),
