@@ -1,6 +1,7 @@
 //! Meshes from the host's memory.
 
 use std::ffi::{c_char, c_void};
+use std::mem::MaybeUninit;
 
 use rayon::prelude::*;
 
@@ -139,16 +140,28 @@ unsafe fn vertices<const N: usize>(
     Ok(Copied { values: Some(values), sound })
 }
 
-/// All values in their order, on all threads: what takes longest is that the system hands out fresh memory.
-fn copied<T: bytemuck::Pod + Send + Sync>(bytes: &[u8], sound: impl Fn(&[T]) -> bool + Sync) -> Copied<Vec<T>> {
-    let mut values: Vec<T> = bytemuck::zeroed_vec(bytes.len() / size_of::<T>());
-    ask_for_large_pages(&mut values);
-    let (chunks, parts) = (values.par_chunks_mut(CHUNK), bytes.par_chunks(CHUNK * size_of::<T>()));
-    let copy = |(values, bytes): (&mut [T], &[u8])| {
-        bytemuck::cast_slice_mut(values).copy_from_slice(bytes);
+/// All values in their order, on all threads: what takes longest is that the system hands out fresh memory. It is not filled with zeros first, which memory that was used before would have to be.
+fn copied<T: bytemuck::AnyBitPattern + Send + Sync>(
+    bytes: &[u8],
+    sound: impl Fn(&[T]) -> bool + Sync,
+) -> Copied<Vec<T>> {
+    let count = bytes.len() / size_of::<T>();
+    let mut values: Vec<T> = Vec::with_capacity(count);
+    let fresh = &mut values.spare_capacity_mut()[..count];
+    ask_for_large_pages(fresh);
+    let (chunks, parts) = (fresh.par_chunks_mut(CHUNK), bytes.par_chunks(CHUNK * size_of::<T>()));
+    let copy = |(values, bytes): (&mut [MaybeUninit<T>], &[u8])| {
+        assert!(bytes.len() >= size_of_val(values));
+        // SAFETY: there are as many bytes as values take, and the two do not overlap: `values` was made in this call. Any bytes are a T, so that all of them are one then.
+        let values = unsafe {
+            bytes.as_ptr().copy_to_nonoverlapping(values.as_mut_ptr().cast(), size_of_val(values));
+            std::slice::from_raw_parts(values.as_ptr().cast::<T>(), values.len())
+        };
         sound(values)
     };
     let sound = chunks.zip(parts).map(copy).reduce(|| true, |one, other| one & other);
+    // SAFETY: chunks and parts are as many, and so all values were copied.
+    unsafe { values.set_len(count) };
     Copied { values, sound }
 }
 
