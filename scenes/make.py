@@ -429,14 +429,23 @@ class Scene:
                          extensions=self.extension("KHR_lights_punctual", {"light": len(lights) - 1}))
 
     def animate(self, name, seconds, channels):
-        """One animation; `channels` are (node, "translation" or "rotation", values at those seconds), linear between."""
+        """One animation; `channels` are (node, what, values at those seconds): "translation" and "rotation", linear between, or
+        "intensity" of the light that the node places, which steps."""
         times = self.accessor([(s,) for s in seconds], "SCALAR", bounds=True)
         samplers, targets = [], []
         for node, path, values in channels:
-            rows = [tuple(tidy(x) for x in value) for value in values]
-            samplers.append({"input": times, "interpolation": "LINEAR",
-                             "output": self.accessor(rows, "VEC4" if path == "rotation" else "VEC3")})
-            targets.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+            if path == "intensity":
+                light = self.document["nodes"][node]["extensions"]["KHR_lights_punctual"]["light"]
+                pointer = f"/extensions/KHR_lights_punctual/lights/{light}/intensity"
+                target = {"path": "pointer", "extensions": self.extension("KHR_animation_pointer", {"pointer": pointer})}
+                samplers.append({"input": times, "interpolation": "STEP",
+                                 "output": self.accessor([(value,) for value in values], "SCALAR")})
+            else:
+                target = {"node": node, "path": path}
+                rows = [tuple(tidy(x) for x in value) for value in values]
+                samplers.append({"input": times, "interpolation": "LINEAR",
+                                 "output": self.accessor(rows, "VEC4" if path == "rotation" else "VEC3")})
+            targets.append({"sampler": len(samplers) - 1, "target": target})
         return self.put("animations", {"name": name, "samplers": samplers, "channels": targets})
 
     # -- output
@@ -768,6 +777,93 @@ def animated(s):
         (camera, "translation", eyes),
         (camera, "rotation", [look(eye, (0, 0.85, -0.3)) for eye in eyes]),
     ])
+
+
+def two_seconds(steps=16):
+    """The times of a loop of two seconds, and as many angles of one turn, in radians."""
+    return [2 * i / steps for i in range(steps + 1)], [2 * math.pi * i / steps for i in range(steps + 1)]
+
+
+@scene("cube-and-sphere", "Two seconds of a turning cube and a circling glass ball whose caustic crosses it, after Larsen & Christensen figure 4")
+def cube_and_sphere(s):
+    white, left, right = s.diffuse("white", WHITE), s.diffuse("red", RED), s.diffuse("green", GREEN)
+    s.add("room", cave([-1.5, 1.5], [0, 2.4], [-1.5, 2], lambda side, cell: {"-x": left, "+x": right}.get(side, white)))
+    glass = s.material("glass", roughness=0, extensions={
+        "KHR_materials_transmission": {"transmissionFactor": 1},
+        "KHR_materials_ior": {"ior": 1.5},
+        "KHR_materials_volume": {"thicknessFactor": 0.6},
+    })
+    seconds, angles = two_seconds()
+    cube = s.add("cube", box((-0.3, -0.3, -0.3), (0.3, 0.3, 0.3)), s.diffuse("sand", SAND), at=(-0.55, 0.32, -0.5))
+    ways = [(0.1 + 0.4 * math.sin(a), 0.75 + 0.2 * math.cos(a), 0.1 - 0.35 * math.cos(a)) for a in angles]
+    ball = s.add("ball", sphere(0.3, 32), glass, at=ways[0])
+    s.light("lamp", "point", (0.9, 2.1, 0.6), intensity=5.0)
+    s.camera("camera", (0, 1.3, 1.85), (-0.05, 0.75, -0.5), 58)
+    s.animate("two seconds", seconds, [
+        (cube, "rotation", [turn((0, 1, 0), math.degrees(a)) for a in angles]),
+        (ball, "translation", ways),
+    ])
+
+
+def two_lit_rooms(s, door=True, right_lit=True, moving=True, cameras=("left", "right")):
+    """Two rooms side by side, two lamps in each, the wall between them with or without an opening; in the left one a bar turns and
+    a cube glides. Returns the nodes of the right room's lamps."""
+    white, warm, cool = s.diffuse("white", WHITE), s.diffuse("ochre", OCHRE), s.diffuse("blue", BLUE)
+    floor = s.diffuse("floor", (0.5, 0.46, 0.42))
+
+    def paint(side, cell):
+        if side == "-y":
+            return floor
+        if side == "+x" and cell.x > 0.05:
+            return warm
+        return cool if side == "-x" and cell.x < -0.05 else white
+
+    def is_wall(cell):
+        return abs(cell.x) < 0.05 and not (door and cell.y < 2 and abs(cell.z) < 0.6)
+
+    s.add("rooms", cave([-3.05, -0.05, 0.05, 3.05], [0, 2, 2.5], [-1.5, -0.6, 0.6, 1.5], paint, solid=is_wall))
+    seconds, angles = two_seconds()
+    bar = s.add("bar", box((-0.6, -0.06, -0.1), (0.6, 0.06, 0.1)), s.diffuse("red", RED), at=(-1.75, 0.8, -0.3))
+    ways = [(-1.2 - 0.7 * math.sin(a / 2) ** 2, 0.22, 0.7) for a in angles]
+    cube = s.add("cube", box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)), s.diffuse("green", GREEN), at=ways[0])
+    s.add("block", box((-0.25, 0, -0.25), (0.25, 0.7, 0.25), without=["-y"]), s.diffuse("sand", SAND),
+          at=(1.9, 0, -0.5), rotation=turn((0, 1, 0), 25))
+    lamps = []
+    for name, x in (("left", -1.6), ("right", 1.6)):
+        if name == "left" or right_lit:
+            lamps += [s.light(f"{name} lamp {i + 1}", "point", (x, 2.1, z), intensity=3.0) for i, z in enumerate((-0.9, 0.9))]
+    views = {"left": ((-2.85, 1.6, 1.25), (-0.6, 0.9, -0.25)), "right": ((2.85, 1.6, 1.25), (0.6, 0.9, -0.25))}
+    for name in cameras:
+        s.camera(name, *views[name], 64)
+    if moving:
+        s.animate("two seconds", seconds, [
+            (bar, "rotation", [turn((0, 1, 0), math.degrees(a)) for a in angles]),
+            (cube, "translation", ways),
+        ])
+    return lamps[2:]
+
+
+@scene("rooms-divided", "Two seconds of motion in one of two rooms that no light passes between, after Larsen & Christensen figure 5, top: "
+       "nothing changes in the other room")
+def rooms_divided(s):
+    two_lit_rooms(s, door=False)
+
+
+@scene("rooms-connected", "The same with an opening between the rooms, after Larsen & Christensen figure 5, middle: what moves changes the light in both")
+def rooms_connected(s):
+    two_lit_rooms(s)
+
+
+@scene("rooms-dimmed", "The same with the right room's lamps off, after Larsen & Christensen figure 5, bottom: it has the light of the left room alone")
+def rooms_dimmed(s):
+    two_lit_rooms(s, right_lit=False, cameras=("right", "left"))
+
+
+@scene("rooms-switched", "From figure 5's middle to its bottom and back: nothing moves, the right room's lamps go off after half a second and on "
+       "again after one and a half")
+def rooms_switched(s):
+    lamps = two_lit_rooms(s, moving=False, cameras=("right", "left"))
+    s.animate("two seconds", [0, 0.5, 1.5, 2], [(lamp, "intensity", [3, 0, 3, 3]) for lamp in lamps])
 
 
 @scene("textured", "Textures: tiles through a texture transform, a normal map without tangents, an alpha-masked lattice "

@@ -36,11 +36,11 @@ pub enum ErrorsUnknown {
 /// The references of one scene, each made when it is first needed.
 pub struct References<'a> {
     obtain: Box<dyn FnMut(Kind) -> Result<Reference, String> + 'a>,
-    made: HashMap<Kind, Rc<Reference>>,
+    pub(super) made: HashMap<Kind, Rc<Reference>>,
 }
 
 /// What the references of a scene differ in: which light they show, and where in a pixel it is sampled.
-type Kind = (LightPaths, PixelFilter);
+pub(super) type Kind = (LightPaths, PixelFilter);
 
 impl<'a> References<'a> {
     /// The references of `subject` at `size`, of `spp` samples per pixel, light sampled where in a pixel a contender does.
@@ -113,6 +113,16 @@ impl<'a> References<'a> {
         Ok(())
     }
 
+    /// The errors of images made with `settings`, by the light paths that these account for, and the reference that they are against.
+    pub(super) fn against_equal(
+        &mut self,
+        images: &SlotImages,
+        settings: &Settings,
+    ) -> Result<(Errors, Rc<Reference>), ErrorsUnknown> {
+        let equal = self.equal_to(settings, settings.filter())?;
+        Ok((errors(images, &equal)?, equal))
+    }
+
     /// The slots as far as the methods go, each from the reference that is limited like it.
     fn equal_to(&mut self, settings: &Settings, filter: PixelFilter) -> Result<Rc<Reference>, ErrorsUnknown> {
         let kind_of = |slot| (settings.light_paths(slot), filter);
@@ -149,9 +159,9 @@ impl std::fmt::Debug for References<'_> {
 
 /// Errors, and the relative noise of what they are against, of pixels and of blocks, by part.
 #[derive(Default)]
-struct Errors {
-    errors: BTreeMap<String, ImageErrors>,
-    noise: BTreeMap<String, f64>,
+pub(super) struct Errors {
+    pub(super) errors: BTreeMap<String, ImageErrors>,
+    pub(super) noise: BTreeMap<String, f64>,
     block_noise: BTreeMap<String, f64>,
 }
 

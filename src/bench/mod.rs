@@ -8,11 +8,14 @@
 //!  └────▶ errors ─────────────────┘
 //!         (against references)
 //! ```
+//!
+//! `over_time` plays a sequence instead of rounds, and tells each frame by itself.
 
 mod alone;
 pub mod comparison;
 mod error_rows;
 mod errors;
+pub mod over_time;
 pub mod report;
 pub mod rows;
 mod run;

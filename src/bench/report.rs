@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::over_time::OverTime;
 use super::statistics::Spread;
 use crate::graph::{joined, lies_in};
 pub use crate::metrics::ImageErrors;
@@ -159,6 +160,9 @@ pub struct Run {
     /// `noise_full` of blocks of 8×8 pixels.
     #[serde(default)]
     pub block_noise_full: Option<BTreeMap<String, f64>>,
+    /// The frames one by one, if a sequence was played: then spreads are over its frames, and errors are those of the frames.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_time: Option<OverTime>,
 }
 
 /// One pass of a run.

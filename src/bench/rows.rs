@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::over_time::OverTime;
 use super::report::{Pass, Piece, PieceAlone, Run};
 use super::statistics::Spread;
 use super::units;
@@ -169,6 +170,11 @@ pub fn caption(run: &Run) -> String {
     let [width, height] = run.size;
     let (rounds, camera, load) = (run.frames, &run.camera, units::milliseconds(run.load_ms));
     let warmup = run.warmup + 1;
+    if let Some(OverTime { fps, .. }) = &run.over_time {
+        return format!(
+            "{width}x{height}, {camera}, {rounds} frames played at {fps} a second, scene loaded in {load} ms"
+        );
+    }
     format!(
         "{width}x{height}, camera {camera}, {rounds} rounds after {warmup} frames of warm-up, scene loaded in {load} ms"
     )

@@ -312,7 +312,7 @@ fn request(subject: &Subject<'_>, options: &Options, timing: Timing) -> FrameReq
 }
 
 /// An error and its causes, `a: b: c`.
-fn sentence(error: &(dyn std::error::Error + 'static)) -> String {
+pub(super) fn sentence(error: &(dyn std::error::Error + 'static)) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
     causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }

@@ -56,6 +56,11 @@ impl Samples {
         self.add_warmup(timings);
     }
 
+    /// Whether nothing was measured yet.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.first_frame_ms == 0.0
+    }
+
     /// A frame of which only the pipelines count that it made.
     pub(crate) fn add_warmup(&mut self, timings: &FrameTimings) {
         self.pipeline_ms += timings.pipeline_ms;

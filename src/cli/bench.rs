@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
+use irradia::bench::over_time::{Comparing, Played, Sequence, over_time_text, play, steps_per_contender};
 use irradia::bench::report::{Failure, Report, Run};
 use irradia::bench::{ErrorsUnknown, Finished, Options, PICTURE_TONE_MAP, References, Subject, run as measure, tables};
 use irradia::output::{self, Target};
@@ -15,6 +16,7 @@ use super::attributes::Picture;
 use super::files;
 use super::invocation::{Invocation, TimedArgs};
 use super::method_args::OptionArgs;
+use super::over_time_args::OverTimeArgs;
 use super::reference;
 use super::scene_args::SceneArgs;
 use super::terminal::{Progress, Steps, Terminal};
@@ -32,7 +34,7 @@ pub(crate) struct BenchArgs {
     /// The presets to measure each technique at, a list
     #[arg(long, value_delimiter = ',', value_parser = values::preset(), default_value = Preset::Default.name())]
     preset: Vec<Preset>,
-    /// Rounds; each technique renders in each round in turn
+    /// Rounds; each technique renders in each round in turn. With --animate the frames of the sequence
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
     /// Frames of each technique before the rounds, after its first, which is timed apart
@@ -64,6 +66,8 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "DIR")]
     images: Option<PathBuf>,
     #[command(flatten)]
+    over_time: OverTimeArgs,
+    #[command(flatten)]
     timed: TimedArgs,
     #[command(flatten)]
     options: OptionArgs,
@@ -80,7 +84,7 @@ pub(crate) fn run(args: &BenchArgs, invocation: &Invocation<'_>) -> Result<()> {
     let progress = invocation.terminal.progress(bench.frames_per_scene() * args.scenes.len() as u64);
     for (index, spec) in args.scenes.iter().enumerate() {
         progress.about(spec);
-        let (runs, failures) = match bench.scene(spec, &report.runs, &progress) {
+        let (runs, mut failures) = match bench.scene(spec, &report.runs, &progress) {
             Ok(outcome) => outcome,
             Err(error) => {
                 (Vec::new(), vec![Failure { scene: spec.clone(), error: format!("{error:#}"), ..Failure::default() }])
@@ -88,7 +92,12 @@ pub(crate) fn run(args: &BenchArgs, invocation: &Invocation<'_>) -> Result<()> {
         };
         progress.at(bench.frames_per_scene() * (index as u64 + 1));
         if !runs.is_empty() {
-            invocation.terminal.print(&format!("{}\n", tables::scene_text(&runs.iter().collect::<Vec<_>>())))?;
+            let shown: Vec<&Run> = runs.iter().collect();
+            let text = format!("{}\n{}", tables::scene_text(&shown), over_time_text(&shown));
+            invocation.terminal.print(&text)?;
+            if let Err(error) = args.over_time.write_plots(&shown) {
+                failures.push(Failure { scene: spec.clone(), error: format!("{error:#}"), ..Failure::default() });
+            }
         }
         report.runs.extend(runs);
         report.failures.extend(failures);
@@ -98,6 +107,7 @@ pub(crate) fn run(args: &BenchArgs, invocation: &Invocation<'_>) -> Result<()> {
         invocation.terminal.print(&tables::summary_text(&report.runs))?;
     }
     bench.files.write(&report)?;
+    args.over_time.write_csv(&report.runs)?;
     invocation.check_validation(&bench.context)?;
     match report.failures.as_slice() {
         [] => Ok(()),
@@ -121,6 +131,7 @@ impl Bench<'_> {
     /// Finds out what can go wrong before the first frame: devices, and files that could not be written.
     fn new<'a>(args: &'a BenchArgs, invocation: &Invocation<'a>) -> Result<Bench<'a>> {
         let files = ReportFiles::open(args)?;
+        args.scene_args.flight()?;
         let mut contenders = Vec::new();
         for technique in Choice::expand(&args.technique, &Technique::ALL) {
             for preset in &args.preset {
@@ -137,21 +148,29 @@ impl Bench<'_> {
         if let Some(folder) = &args.images {
             fs::create_dir_all(folder).with_context(|| format!("the folder {} cannot be made", folder.display()))?;
         }
+        args.over_time.make_folder()?;
         Ok(Bench { args, context, contenders, options, files, cache, terminal: invocation.terminal })
     }
 
     fn frames_per_scene(&self) -> u64 {
-        self.options.frames_per_contender() * self.contenders.len() as u64
+        let steps = match self.args.over_time.fps() {
+            Some(_) => steps_per_contender(&self.options),
+            None => self.options.frames_per_contender(),
+        };
+        steps * self.contenders.len() as u64
     }
 
     /// Measures all contenders on one scene and writes their pictures.
     fn scene(&self, spec: &str, earlier: &[Run], progress: &Progress) -> Result<(Vec<Run>, Vec<Failure>)> {
         let loaded = self.args.scene_args.open(spec)?;
-        let camera = self.args.scene_args.view(&loaded.scene)?;
+        let camera = self.args.scene_args.view(&loaded.scene, 0.0)?;
         // Two files may hold scenes of the same name; then the path tells them apart.
         let known = earlier.iter().any(|run| run.scene == loaded.scene.name);
         let name = if known { spec } else { &loaded.scene.name };
         let subject = Subject { name, scene: &loaded.scene, camera: &camera, load_ms: loaded.load_ms };
+        if let Some(fps) = self.args.over_time.fps() {
+            return self.play(&subject, fps, progress);
+        }
         let outcomes = measure(&self.context, &subject, &self.contenders, &self.options, &mut || progress.step());
         let mut steps = Steps::new(self.terminal, &format!("reference of {name}"));
         let mut references = self.args.reference.map(|spp| {
@@ -167,12 +186,7 @@ impl Bench<'_> {
                     continue;
                 }
             };
-            let failure = |error: String| Failure {
-                scene: name.to_owned(),
-                technique: Some(settings.technique.name().to_owned()),
-                preset: Some(settings.preset.name().to_owned()),
-                error,
-            };
+            let failure = |error: String| Failure { error, ..failure_of(name, settings) };
             if let Some(made) = &mut references {
                 match made.compare(&mut finished, settings) {
                     Ok(()) => {}
@@ -192,6 +206,34 @@ impl Bench<'_> {
         Ok((runs, failures))
     }
 
+    /// Plays one scene frame by frame with all contenders.
+    fn play(&self, subject: &Subject<'_>, fps: f64, progress: &Progress) -> Result<(Vec<Run>, Vec<Failure>)> {
+        let flight = self.args.scene_args.flight()?;
+        let sequence = Sequence {
+            fps,
+            flight: flight.as_ref(),
+            camera: self.args.scene_args.camera.as_deref(),
+            lag: self.args.over_time.lag(),
+            compare: self.args.reference.map(|spp| Comparing { spp, cache: self.cache.as_ref() }),
+        };
+        let step = &mut || progress.step();
+        let Played { outcomes, failure } =
+            play(&self.context, subject, &self.contenders, &self.options, &sequence, step);
+        let (mut runs, mut failures) = (Vec::new(), Vec::from_iter(failure));
+        for (outcome, settings) in outcomes.into_iter().zip(&self.contenders) {
+            match outcome {
+                Ok(finished) => {
+                    if let Err(error) = self.write_picture(&finished, settings) {
+                        failures.push(Failure { error: format!("{error:#}"), ..failure_of(subject.name, settings) });
+                    }
+                    runs.push(finished.run);
+                }
+                Err(failure) => failures.push(failure),
+            }
+        }
+        Ok((runs, failures))
+    }
+
     fn write_picture(&self, finished: &Finished, settings: &Settings) -> Result<()> {
         let (Some(folder), Some(pixels)) = (&self.args.images, &finished.picture) else { return Ok(()) };
         let run = &finished.run;
@@ -200,7 +242,7 @@ impl Bench<'_> {
         let picture = Picture {
             scene: &run.scene,
             camera: &run.camera,
-            frame: 0,
+            frame: run.over_time.as_ref().map_or(0, |_| run.frames.saturating_sub(1)),
             lead_in: run.lead_in,
             size: run.size,
             settings,
@@ -237,6 +279,15 @@ impl ReportFiles {
             target.write(tables::markdown(report).as_bytes())?;
         }
         Ok(())
+    }
+}
+
+fn failure_of(scene: &str, settings: &Settings) -> Failure {
+    Failure {
+        scene: scene.to_owned(),
+        technique: Some(settings.technique.name().to_owned()),
+        preset: Some(settings.preset.name().to_owned()),
+        ..Failure::default()
     }
 }
 

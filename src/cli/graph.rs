@@ -31,7 +31,7 @@ pub(crate) fn run(args: &GraphArgs, invocation: &Invocation<'_>) -> Result<()> {
     let settings = args.methods.settings()?;
     let scene = args.scene_args.open(&args.scene)?.scene;
     let context = invocation.context(CrashMarkers::On)?;
-    let request = FrameRequest::new(args.scene_args.size, args.scene_args.view(&scene)?);
+    let request = FrameRequest::new(args.scene_args.size, args.scene_args.view(&scene, 0.0)?);
     let request = request.with(|request| request.read_back = false);
     let description = Renderer::new(&context, settings)?.describe(&scene, &request)?;
     if let Some(target) = dot {

@@ -12,6 +12,7 @@ mod files;
 mod graph;
 mod invocation;
 mod method_args;
+mod over_time_args;
 mod reference;
 mod render;
 mod scene_args;

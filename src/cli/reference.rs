@@ -12,6 +12,7 @@ use irradia::reference::{
     merge,
 };
 use irradia::renderer::CrashMarkers;
+use irradia::scene::FRAME_RATE;
 
 use super::invocation::{Invocation, WrongUsage};
 use super::scene_args::SceneArgs;
@@ -116,7 +117,7 @@ fn make(
     scene.set_frame(args.frame);
     let request = ReferenceRequest {
         size: args.scene_args.size,
-        camera: args.scene_args.view(&scene)?,
+        camera: args.scene_args.view(&scene, f64::from(args.frame) / FRAME_RATE)?,
         estimator: args.estimator,
         bounces: args.bounces,
         caustics: args.caustics,

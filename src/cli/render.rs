@@ -85,7 +85,7 @@ pub(crate) fn run(args: &RenderArgs, invocation: &Invocation<'_>) -> Result<()> 
     let mut noise = String::new();
     for number in first.saturating_sub(lead_in)..=last {
         scene.set_frame(number);
-        let request = request(args, args.scene_args.view(&scene)?, number);
+        let request = request(args, args.scene_args.view(&scene, f64::from(number) / FRAME_RATE)?, number);
         let rendering = Instant::now();
         if number < first {
             renderer.render(&scene, &request.with(|request| request.read_back = false))?;

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use clap::Args;
-use irradia::scene::{CameraView, LightSpec, LoadOptions, Scene, parse_sky};
+use irradia::scene::{CameraView, Flight, LightSpec, LoadOptions, Scene, parse_sky};
 
 use super::values;
 
@@ -17,6 +17,9 @@ pub(crate) struct SceneArgs {
     /// The camera, by name or index [default: the scene's first, or a view of the whole scene if it has none]
     #[arg(long, value_name = "NAME|INDEX")]
     pub(crate) camera: Option<String>,
+    /// The way that the eye takes over the frames: a file of keyframes, or the name of a built-in flight
+    #[arg(long, value_name = "FILE|NAME", conflicts_with = "camera")]
+    flight: Option<String>,
     #[command(flatten)]
     source: SourceArgs,
 }
@@ -82,13 +85,22 @@ impl SourceArgs {
 }
 
 impl SceneArgs {
-    /// As [`SourceArgs::open`].
+    /// As [`SourceArgs::open`]; a flight that cannot be used fails it.
     pub(crate) fn open(&self, spec: &str) -> anyhow::Result<LoadedScene> {
+        self.flight()?;
         self.source.open(spec)
     }
 
-    /// Where the scene, as it is now, is seen from.
-    pub(crate) fn view(&self, scene: &Scene) -> anyhow::Result<CameraView> {
+    /// The flight, if there is one.
+    pub(crate) fn flight(&self) -> anyhow::Result<Option<Flight>> {
+        Ok(self.flight.as_deref().map(Flight::open).transpose()?)
+    }
+
+    /// Where the scene, as it is now, is seen from at a time of the sequence, in seconds.
+    pub(crate) fn view(&self, scene: &Scene, seconds: f64) -> anyhow::Result<CameraView> {
+        if let Some(flight) = self.flight()? {
+            return Ok(flight.view(seconds));
+        }
         let view = scene.camera_view(self.camera.as_deref())?;
         if view.automatic {
             tracing::info!("{} has no camera; a view of the whole scene is taken", scene.name);

@@ -68,6 +68,12 @@ pub(crate) fn percentage(text: &str) -> Result<f64, String> {
     share.ok_or_else(|| "a percentage is a number above 0, such as 0.5%".to_owned())
 }
 
+/// Frames a second.
+pub(crate) fn frame_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| (1e-3..=1e6).contains(rate));
+    rate.ok_or_else(|| "a number of frames a second, 0.001 to 1000000, such as 30".to_owned())
+}
+
 /// One of a list, or all of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice<T> {
@@ -178,6 +184,14 @@ mod tests {
         assert_eq!(["50%", "50", "50 %"].map(percentage), [Ok(0.5), Ok(0.5), Ok(0.5)]);
         for wrong in ["", "%", "0", "-1%", "NaN", "inf%", "1%%"] {
             assert!(percentage(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn frame_rates() {
+        assert_eq!(["30", "0.5"].map(frame_rate), [Ok(30.0), Ok(0.5)]);
+        for wrong in ["", "0", "-1", "NaN", "inf", "30 fps"] {
+            assert!(frame_rate(wrong).is_err(), "{wrong}");
         }
     }
 

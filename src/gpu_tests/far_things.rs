@@ -170,7 +170,7 @@ fn flight() -> Scene {
         times: vec![0.0, 1.0],
         values,
     };
-    scene.add_animation(Animation { name: String::new(), channels: vec![channel] }).expect("the node is there");
+    scene.add_animation(Animation { channels: vec![channel], ..Animation::default() }).expect("the node is there");
     scene
 }
 

@@ -35,6 +35,7 @@ mod lists;
 mod loader;
 mod memory;
 mod numbers;
+mod over_time;
 mod path_caustics;
 mod path_closed_forms;
 mod path_lobes;

@@ -84,6 +84,11 @@ impl Renderer {
         self.store.reset_history();
     }
 
+    /// Whether its methods kept something over the frames so far.
+    pub(crate) fn keeps_past(&self) -> bool {
+        self.store.past() > 0
+    }
+
     /// Makes a frame of the scene as it is now. If some buffer could not know how much it had to hold and was too small, the frame is made again
     /// with a larger one.
     ///

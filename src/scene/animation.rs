@@ -1,6 +1,6 @@
-//! Animation of node transforms: keyframes and their interpolation (glTF 2.0, 3.11 and appendix C).
+//! Animation of node transforms and of lights: keyframes and their interpolation (glTF 2.0, 3.11 and appendix C; KHR_animation_pointer).
 
-use super::NodeId;
+use super::{LightId, NodeId};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// A named set of channels. All animations of a scene play at once.
@@ -10,15 +10,40 @@ pub struct Animation {
     pub name: String,
     /// What moves.
     pub channels: Vec<Channel>,
+    /// Lights that change.
+    pub lights: Vec<LightChannel>,
 }
 
 impl Animation {
     /// Time of the last keyframe in seconds.
     pub fn duration(&self) -> f64 {
-        self.channels
-            .iter()
-            .filter_map(|channel| channel.times.last())
-            .fold(0.0, |longest, &time| longest.max(time.into()))
+        let moved = self.channels.iter().filter_map(|channel| channel.times.last());
+        let changed = self.lights.iter().filter_map(|channel| channel.times.last());
+        moved.chain(changed).fold(0.0, |longest, &time| longest.max(time.into()))
+    }
+}
+
+/// Keyframes of how strong a punctual light is.
+#[derive(Clone, Debug)]
+pub struct LightChannel {
+    /// The light that changes.
+    pub light: LightId,
+    /// Its colour: what the values are multiplied by. Linear RGB, finite, at least 0.
+    pub color: [f32; 3],
+    /// How to get from one keyframe to the next.
+    pub interpolation: Interpolation,
+    /// Seconds, finite, strictly growing, at least one.
+    pub times: Vec<f32>,
+    /// One value a keyframe, W/sr or W/m², all finite; for cubic splines three: in-tangent, value, out-tangent. Below 0 counts as 0.
+    pub values: Vec<f32>,
+}
+
+impl LightChannel {
+    /// The light's intensity at a time. `None` without keyframes.
+    pub(super) fn intensity(&self, seconds: f64) -> Option<[f32; 3]> {
+        let value = |index: usize| self.values.get(index).map(|value| [f64::from(*value), 0.0, 0.0, 0.0]);
+        let [strength, ..] = sample(&self.times, self.interpolation, false, value, seconds)?;
+        Some(self.color.map(|channel| (f64::from(channel) * strength.max(0.0)) as f32))
     }
 }
 
@@ -115,46 +140,48 @@ pub(super) fn unit_quaternion(value: [f64; 4]) -> DQuat {
 impl Channel {
     /// The value at a time; before the first and after the last keyframe, theirs. `None` without keyframes.
     fn sample(&self, seconds: f64) -> Option<[f64; 4]> {
-        let after = self.times.partition_point(|&time| f64::from(time) <= seconds);
-        let last = self.times.len().checked_sub(1)?;
-        let key = after.saturating_sub(1);
-        if after == 0 || key == last || self.interpolation == Interpolation::Step {
-            return self.value(key);
-        }
-        let (start, end) = (f64::from(self.times[key]), f64::from(self.times[key + 1]));
-        let (length, t) = (end - start, (seconds - start) / (end - start));
-        let (from, to) = (self.value(key)?, self.value(key + 1)?);
-        if self.interpolation == Interpolation::CubicSpline {
-            let out_tangent = self.triple(key, 2)?;
-            let in_tangent = self.triple(key + 1, 0)?;
-            let (t2, t3) = (t * t, t * t * t);
-            return Some(std::array::from_fn(|lane| {
-                (2.0 * t3 - 3.0 * t2 + 1.0) * from[lane]
-                    + length * (t3 - 2.0 * t2 + t) * out_tangent[lane]
-                    + (3.0 * t2 - 2.0 * t3) * to[lane]
-                    + length * (t3 - t2) * in_tangent[lane]
-            }));
-        }
-        if self.property == Property::Rotation {
-            // glam takes the shortest arc.
-            return Some(unit_quaternion(from).slerp(unit_quaternion(to), t).to_array());
-        }
-        Some(std::array::from_fn(|lane| from[lane] + (to[lane] - from[lane]) * t))
-    }
-
-    fn value(&self, key: usize) -> Option<[f64; 4]> {
-        if self.interpolation == Interpolation::CubicSpline {
-            self.triple(key, 1)
-        } else {
-            self.values.get(key).map(widen)
-        }
-    }
-
-    fn triple(&self, key: usize, part: usize) -> Option<[f64; 4]> {
-        self.values.get(key * 3 + part).map(widen)
+        let value = |index: usize| self.values.get(index).map(|value| value.map(f64::from));
+        sample(&self.times, self.interpolation, self.property == Property::Rotation, value, seconds)
     }
 }
 
-fn widen(value: &[f32; 4]) -> [f64; 4] {
-    value.map(f64::from)
+/// The value at a time between keyframes, whose `values` are those of glTF's accessors; before the first and after the last keyframe, theirs.
+fn sample(
+    times: &[f32],
+    interpolation: Interpolation,
+    rotates: bool,
+    values: impl Fn(usize) -> Option<[f64; 4]>,
+    seconds: f64,
+) -> Option<[f64; 4]> {
+    let triple = |key: usize, part: usize| values(key * 3 + part);
+    let value = |key: usize| if interpolation == Interpolation::CubicSpline { triple(key, 1) } else { values(key) };
+    let after = times.partition_point(|&time| f64::from(time) <= seconds);
+    let last = times.len().checked_sub(1)?;
+    let key = after.saturating_sub(1);
+    if after == 0 || key == last || interpolation == Interpolation::Step {
+        return value(key);
+    }
+    let (start, end) = (f64::from(times[key]), f64::from(times[key + 1]));
+    let (length, t) = (end - start, (seconds - start) / (end - start));
+    let (from, to) = (value(key)?, value(key + 1)?);
+    if interpolation == Interpolation::CubicSpline {
+        let (out_tangent, in_tangent) = (triple(key, 2)?, triple(key + 1, 0)?);
+        return Some(std::array::from_fn(|lane| {
+            hermite([from[lane], to[lane]], [length * out_tangent[lane], length * in_tangent[lane]], t)
+        }));
+    }
+    if rotates {
+        // glam takes the shortest arc.
+        return Some(unit_quaternion(from).slerp(unit_quaternion(to), t).to_array());
+    }
+    Some(std::array::from_fn(|lane| from[lane] + (to[lane] - from[lane]) * t))
+}
+
+/// The cubic from one end to the other that has these slopes there; `t` from 0 to 1.
+pub(super) fn hermite([from, to]: [f64; 2], [out_slope, in_slope]: [f64; 2], t: f64) -> f64 {
+    let (t2, t3) = (t * t, t * t * t);
+    (2.0 * t3 - 3.0 * t2 + 1.0) * from
+        + (t3 - 2.0 * t2 + t) * out_slope
+        + (3.0 * t2 - 2.0 * t3) * to
+        + (t3 - t2) * in_slope
 }

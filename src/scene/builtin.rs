@@ -37,6 +37,11 @@ builtins! {
     "lights" => "lights.glb",
     "textured" => "textured.glb",
     "animated" => "animated.glb",
+    "cube-and-sphere" => "cube-and-sphere.glb",
+    "rooms-divided" => "rooms-divided.glb",
+    "rooms-connected" => "rooms-connected.glb",
+    "rooms-dimmed" => "rooms-dimmed.glb",
+    "rooms-switched" => "rooms-switched.glb",
 }
 
 /// The names of all built-in scenes, in the order in which they are best read.

@@ -151,7 +151,7 @@ mod tests {
             times: vec![0.0, 1.0],
             values,
         };
-        scene.add_animation(Animation { name: String::new(), channels: vec![channel] }).expect("the node is there");
+        scene.add_animation(Animation { channels: vec![channel], ..Animation::default() }).expect("the node is there");
         scene.set_time(1.0);
         assert_eq!(scene.extent(), at_rest);
         assert_eq!(scene.bulk().map(|bounds| bounds.max.x), Some(1.0), "it has flown away");

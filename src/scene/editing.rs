@@ -82,6 +82,19 @@ impl Scene {
         Ok(())
     }
 
+    /// Gives animated lights the strength that they have at a time.
+    pub(super) fn set_animated_lights(&mut self, seconds: f64) {
+        let channels = self.animations().iter().flat_map(|animation| &animation.lights);
+        let changed: Vec<(LightId, [f32; 3])> =
+            channels.filter_map(|channel| Some((channel.light, channel.intensity(seconds)?))).collect();
+        for (id, intensity) in changed {
+            let light = Light { intensity, ..self.lights[id.0].clone() };
+            if let Err(error) = self.set_light(id, light) {
+                tracing::warn!("a light stays as it is at {seconds} s: {error}");
+            }
+        }
+    }
+
     /// Sets the sky's radiance in W/(m² sr). Channels that are negative or not finite become 0.
     pub fn set_sky(&mut self, radiance: [f32; 3]) {
         let radiance = radiance.map(|channel| if channel.is_finite() { channel.max(0.0) } else { 0.0 });

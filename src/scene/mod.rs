@@ -12,6 +12,7 @@
 //! | `ids` | the indices that name them |
 //! | `camera_choice` | which camera the scene is seen from |
 //! | `extent`, `bulk` | where it is and how far it reaches, whatever specks lie far from it |
+//! | `flight` | a camera's way through it, from a file |
 //! | `facts` | what it contains, which decides what need not run |
 //! | `content_hash`, `digest` | whether two scenes, of two processes or machines, look alike |
 //! | `emission`, `emission_points`, `shining` | what alpha and textures leave of emissive surfaces |
@@ -47,6 +48,7 @@ mod emitters;
 mod error;
 mod extent;
 mod facts;
+mod flight;
 mod gltf;
 mod ids;
 mod indoor_view;
@@ -64,12 +66,13 @@ mod tangents;
 pub(crate) mod triangle_cells;
 mod world;
 
-pub use animation::{Animation, Channel, Interpolation, Property};
+pub use animation::{Animation, Channel, Interpolation, LightChannel, Property};
 pub use builtin::builtin_names;
 pub use camera::{Camera, CameraView, Projection};
 pub use emitters::EmitterSample;
 pub use error::SceneError;
 pub use facts::Facts;
+pub use flight::{Flight, FlightError};
 pub use gltf::ReadFile;
 pub use ids::{CameraId, LightId, MaterialId, MeshId, NodeId, TextureId};
 pub use light::{Light, LightKind, LightSpec, PlacedLight, parse_sky};

@@ -352,7 +352,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Puts all animated nodes where they are at a time, in seconds. Before the first and after the last keyframe they stand
+    /// Puts all animated nodes where they are at a time, in seconds, and gives animated lights the strength that they have then. Before the first and after the last keyframe they stand
     /// still. What an animation does not touch stays; an animated node's transform is that of the file but for what is animated.
     pub fn set_time(&mut self, seconds: f64) {
         let mut poses = self.rest_poses.clone();
@@ -365,6 +365,7 @@ impl Scene {
         if let Err(error) = self.move_nodes(&locals) {
             tracing::warn!("the animation stands still at {seconds} s: {error}");
         }
+        self.set_animated_lights(seconds);
     }
 
     /// [`Scene::set_time`] for a frame of a sequence: frame N is at N/30 s.
@@ -375,10 +376,13 @@ impl Scene {
     /// Adds an animation; the present transforms of its nodes are those from which it departs.
     ///
     /// # Errors
-    /// [`SceneError::UnknownId`] if it moves a node that does not exist.
+    /// [`SceneError::UnknownId`] if it moves a node, or changes a light, that does not exist.
     pub fn add_animation(&mut self, animation: Animation) -> Result<(), SceneError> {
         for channel in &animation.channels {
             self.check("node", channel.node.0, self.nodes.len())?;
+        }
+        for channel in &animation.lights {
+            self.check("light", channel.light.0, self.lights.len())?;
         }
         for channel in &animation.channels {
             let local = &self.nodes[channel.node.0].local;

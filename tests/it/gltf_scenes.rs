@@ -178,6 +178,70 @@ fn rotations_take_the_shortest_arc() {
     assert!((axis - expected).length() < 1e-6, "{axis}");
 }
 
+/// A file whose light 1 has an animated intensity; light 0 is of no known kind, so that the scene's own light is its first.
+fn with_switched_light(interpolation: &str, pointer: &str, values: &[f32]) -> File {
+    let mut file = File::triangle();
+    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [
+        {"type": "lamp"},
+        {"type": "point", "color": [1.0, 0.5, 0.0], "intensity": 7.0},
+    ]}});
+    file.json["nodes"] = json!([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 1}}}]);
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let input = file.floats(&[0.0, 0.5, 1.5], "SCALAR", 3);
+    let output = file.floats(values, "SCALAR", values.len());
+    file.json["extensionsUsed"] = json!(["KHR_animation_pointer", "KHR_lights_punctual"]);
+    file.json["animations"] = json!([{
+        "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+        "channels": [{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}}}],
+    }]);
+    file
+}
+
+#[test]
+fn lights_are_switched_and_dimmed() {
+    let pointer = "/extensions/KHR_lights_punctual/lights/1/intensity";
+    let intensities = |interpolation: &str, values: &[f32], times: &[f64]| -> Vec<[f32; 3]> {
+        let mut scene = with_switched_light(interpolation, pointer, values).load().expect("it is sound");
+        assert_eq!((scene.warnings.len(), scene.animations()[0].duration()), (0, 1.5), "{:?}", scene.warnings);
+        assert_eq!(scene.placed_lights()[0].intensity, [7.0, 3.5, 0.0], "before any time is set");
+        let at = |seconds: &f64| {
+            scene.set_time(*seconds);
+            scene.placed_lights()[0].intensity
+        };
+        times.iter().map(at).collect()
+    };
+    let switched = intensities("STEP", &[4.0, 0.0, 2.0], &[0.0, 0.49, 0.5, 1.0, 1.5, 9.0]);
+    assert_eq!(switched, [4.0, 4.0, 0.0, 0.0, 2.0, 2.0].map(|strength| [strength, 0.5 * strength, 0.0]));
+    let dimmed = intensities("LINEAR", &[4.0, 0.0, 2.0], &[0.25, 1.0]);
+    assert_eq!(dimmed, [2.0, 1.0].map(|strength| [strength, 0.5 * strength, 0.0]));
+    // A spline that swings below zero is dark there.
+    let spline = intensities("CUBICSPLINE", &[0.0, 1.0, -20.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0], &[0.25, 0.5]);
+    assert_eq!(spline, [[0.0; 3], [1.0, 0.5, 0.0]]);
+
+    let mut scene = with_switched_light("STEP", pointer, &[4.0, 0.0, 2.0]).load().expect("it is sound");
+    scene.set_time(0.1);
+    let before = scene.revisions();
+    scene.set_time(0.4);
+    assert_eq!(scene.revisions(), before, "nothing changed");
+    scene.set_time(0.5);
+    assert_eq!((scene.revisions().lights, scene.revisions().geometry), (before.lights + 1, before.geometry));
+}
+
+#[test]
+fn what_else_a_pointer_animates_is_left_out_with_a_sentence() {
+    for (pointer, values, words) in [
+        ("/materials/0/emissiveFactor", &[1.0, 1.0, 1.0][..], "/materials/0/emissiveFactor"),
+        ("/extensions/KHR_lights_punctual/lights/1/color", &[1.0, 1.0, 1.0], "only the intensity of lights"),
+        ("/extensions/KHR_lights_punctual/lights/1/intensity", &[1.0, 1.0], "2 values for 3 times"),
+        ("/extensions/KHR_lights_punctual/lights/1/intensity", &[1.0, f32::NAN, 1.0], "not finite"),
+    ] {
+        let scene = with_switched_light("STEP", pointer, values).load().expect("the rest is sound");
+        assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+        assert!(scene.warnings[0].contains(words), "{:?}", scene.warnings);
+        assert!(scene.animations().is_empty());
+    }
+}
+
 #[test]
 fn extensions_are_refused_if_required_and_named_once_if_not() {
     let mut file = File::triangle();

@@ -16,6 +16,7 @@ mod light_notation;
 mod live_shaders;
 mod no_vulkan;
 mod output_files;
+mod over_time;
 mod scene;
 mod scene_changes;
 mod scene_fuzz;

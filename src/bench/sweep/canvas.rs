@@ -7,10 +7,10 @@ use plotters::prelude::{Color, DrawingArea, IntoDrawingArea, RGBColor, SVGBacken
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, FontStyle, ShapeStyle, TextStyle};
 
-pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
-pub(super) const FAINT_INK: RGBColor = RGBColor(102, 102, 102);
-pub(super) const GRID: RGBColor = RGBColor(214, 214, 214);
-pub(super) const FAINT_GRID: RGBColor = RGBColor(238, 238, 238);
+pub(in crate::bench) const INK: RGBColor = RGBColor(34, 34, 34);
+pub(in crate::bench) const FAINT_INK: RGBColor = RGBColor(102, 102, 102);
+pub(in crate::bench) const GRID: RGBColor = RGBColor(214, 214, 214);
+pub(in crate::bench) const FAINT_GRID: RGBColor = RGBColor(238, 238, 238);
 const PAPER: RGBColor = RGBColor(255, 255, 255);
 /// Okabe and Ito's colours, told apart with any kind of colour vision, without the yellow that is lost on white paper.
 const COLOURS: [RGBColor; 7] = [
@@ -24,30 +24,30 @@ const COLOURS: [RGBColor; 7] = [
 ];
 
 /// In pixels from the upper left corner.
-pub(super) type Point = (i32, i32);
-pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub(in crate::bench) type Point = (i32, i32);
+pub(in crate::bench) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// An SVG on white paper.
-pub(super) struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
+pub(in crate::bench) struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
 impl<'a> Canvas<'a> {
     /// Draws into `text`, which holds the whole document once [`present`](Canvas::present) has been called.
-    pub(super) fn new(text: &'a mut String, size: (u32, u32)) -> Canvas<'a> {
+    pub(in crate::bench) fn new(text: &'a mut String, size: (u32, u32)) -> Canvas<'a> {
         Canvas(SVGBackend::with_string(text, size).into_drawing_area())
     }
 
     /// White all over, before anything else is drawn.
-    pub(super) fn blank(&self) -> Drawn {
+    pub(in crate::bench) fn blank(&self) -> Drawn {
         self.0.fill(&PAPER)
     }
 
     /// Ends the document.
-    pub(super) fn present(&self) -> Drawn {
+    pub(in crate::bench) fn present(&self) -> Drawn {
         self.0.present()
     }
 
     /// Series differ in shape as well as colour.
-    pub(super) fn marker(&self, at: Point, series: usize) -> Drawn {
+    pub(in crate::bench) fn marker(&self, at: Point, series: usize) -> Drawn {
         let style = colour(series).filled();
         let polygon = |corners: &[Point]| {
             let corners: Vec<Point> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();
@@ -62,19 +62,24 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    pub(super) fn ring(&self, at: Point) -> Drawn {
+    pub(in crate::bench) fn ring(&self, at: Point) -> Drawn {
         self.0.draw(&Circle::new(at, 9, PAPER.filled()))?;
         self.0.draw(&Circle::new(at, 9, ShapeStyle::from(INK).stroke_width(1)))
     }
 
-    pub(super) fn path(&self, points: &[Point], colour: RGBColor, width: u32) -> Drawn {
+    pub(in crate::bench) fn path(&self, points: &[Point], colour: RGBColor, width: u32) -> Drawn {
         if points.len() < 2 {
             return Ok(());
         }
         self.0.draw(&PathElement::new(points.to_vec(), ShapeStyle::from(colour).stroke_width(width)))
     }
 
-    pub(super) fn dashed(&self, points: &[Point], colour: RGBColor) -> Drawn {
+    /// A filled shape.
+    pub(in crate::bench) fn area(&self, corners: &[Point], colour: RGBColor) -> Drawn {
+        self.0.draw(&Polygon::new(corners.to_vec(), colour.filled()))
+    }
+
+    pub(in crate::bench) fn dashed(&self, points: &[Point], colour: RGBColor) -> Drawn {
         for pair in points.windows(2) {
             let (dx, dy) = (f64::from(pair[1].0 - pair[0].0), f64::from(pair[1].1 - pair[0].1));
             let length = dx.hypot(dy);
@@ -90,30 +95,30 @@ impl<'a> Canvas<'a> {
         Ok(())
     }
 
-    pub(super) fn text(&self, at: Point, text: &str, style: &TextStyle<'_>, horizontal: HPos) -> Drawn {
+    pub(in crate::bench) fn text(&self, at: Point, text: &str, style: &TextStyle<'_>, horizontal: HPos) -> Drawn {
         self.0.draw(&Text::new(text.to_owned(), at, style.pos(Pos::new(horizontal, VPos::Center))))
     }
 }
 
-pub(super) fn colour(series: usize) -> RGBColor {
+pub(in crate::bench) fn colour(series: usize) -> RGBColor {
     COLOURS[series % COLOURS.len()]
 }
 
 /// Thin strokes of the paler colours would be hard to read.
-pub(super) fn darker(RGBColor(red, green, blue): RGBColor) -> RGBColor {
+pub(in crate::bench) fn darker(RGBColor(red, green, blue): RGBColor) -> RGBColor {
     let darker = |channel: u8| (f64::from(channel) * 0.75) as u8;
     RGBColor(darker(red), darker(green), darker(blue))
 }
 
-pub(super) fn title() -> TextStyle<'static> {
+pub(in crate::bench) fn title() -> TextStyle<'static> {
     font(18.0, FontStyle::Bold, INK)
 }
 
-pub(super) fn body(colour: RGBColor) -> TextStyle<'static> {
+pub(in crate::bench) fn body(colour: RGBColor) -> TextStyle<'static> {
     font(13.0, FontStyle::Normal, colour)
 }
 
-pub(super) fn small(colour: RGBColor) -> TextStyle<'static> {
+pub(in crate::bench) fn small(colour: RGBColor) -> TextStyle<'static> {
     font(12.0, FontStyle::Normal, colour)
 }
 

@@ -2,7 +2,7 @@
 
 /// A logarithmic axis on a stretch of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LogAxis {
+pub(in crate::bench) struct LogAxis {
     /// Logarithms to base 10 at the first and the last pixel.
     low: f64,
     high: f64,
@@ -12,13 +12,13 @@ pub(super) struct LogAxis {
 
 /// A place on an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub(in crate::bench) struct Tick {
     /// Pixels.
-    pub(super) at: i32,
+    pub(in crate::bench) at: i32,
     /// The value, if it is written beside the axis.
-    pub(super) label: Option<f64>,
+    pub(in crate::bench) label: Option<f64>,
     /// Whether it is a power of ten.
-    pub(super) decade: bool,
+    pub(in crate::bench) decade: bool,
 }
 
 /// Up to this many decades the values 2 and 5 are written too.
@@ -28,7 +28,7 @@ const SHORTEST: f64 = 0.8;
 
 impl LogAxis {
     /// An axis from pixel `first` to `last` that holds `values` with some room. `None` if none is positive and finite.
-    pub(super) fn around(values: impl Iterator<Item = f64>, first: i32, last: i32) -> Option<LogAxis> {
+    pub(in crate::bench) fn around(values: impl Iterator<Item = f64>, first: i32, last: i32) -> Option<LogAxis> {
         let logs = values.map(f64::log10).filter(|log| log.is_finite());
         let (low, high) =
             logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (log.min(low), log.max(high)));
@@ -40,13 +40,13 @@ impl LogAxis {
     }
 
     /// The pixel of a value.
-    pub(super) fn place(&self, value: f64) -> i32 {
+    pub(in crate::bench) fn place(&self, value: f64) -> i32 {
         let share = (value.log10() - self.low) / (self.high - self.low);
         (self.first + share * (self.last - self.first)).round() as i32
     }
 
     /// All powers of ten on the axis and their multiples by 2 to 9.
-    pub(super) fn ticks(&self) -> Vec<Tick> {
+    pub(in crate::bench) fn ticks(&self) -> Vec<Tick> {
         let mut ticks = Vec::new();
         for exponent in self.low.floor() as i32..=self.high.floor() as i32 {
             for digit in 1..=9 {
@@ -64,7 +64,7 @@ impl LogAxis {
 }
 
 /// A time for an axis: `20 µs`, `1 ms`, `500 ms`, `10 s`.
-pub(super) fn time_label(ms: f64) -> String {
+pub(in crate::bench) fn time_label(ms: f64) -> String {
     let (value, unit) = if ms < 0.9995 {
         (1e3 * ms, "µs")
     } else if ms < 999.5 {
@@ -76,7 +76,7 @@ pub(super) fn time_label(ms: f64) -> String {
 }
 
 /// A number for an axis: `0.002`, `1`, `20`; beyond that with an exponent.
-pub(super) fn number_label(value: f64) -> String {
+pub(in crate::bench) fn number_label(value: f64) -> String {
     if (0.9e-4..1.1e5).contains(&value) { plain(value) } else { format!("{value:e}") }
 }
 
@@ -88,16 +88,16 @@ fn plain(value: f64) -> String {
 
 /// A rectangle: left, top, right, bottom, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Area {
-    pub(super) left: i32,
-    pub(super) top: i32,
-    pub(super) right: i32,
-    pub(super) bottom: i32,
+pub(in crate::bench) struct Area {
+    pub(in crate::bench) left: i32,
+    pub(in crate::bench) top: i32,
+    pub(in crate::bench) right: i32,
+    pub(in crate::bench) bottom: i32,
 }
 
 impl Area {
     /// A square around a point.
-    pub(super) fn around(centre: (i32, i32), half: i32) -> Area {
+    pub(in crate::bench) fn around(centre: (i32, i32), half: i32) -> Area {
         Area { left: centre.0 - half, top: centre.1 - half, right: centre.0 + half, bottom: centre.1 + half }
     }
 
@@ -116,14 +116,14 @@ impl Area {
 
 /// What is drawn so far, so that labels find a place of their own.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(in crate::bench) struct Places {
     frame: Area,
     taken: Vec<Area>,
     segments: Vec<Segment>,
 }
 
 /// A piece of a line, pixels.
-pub(super) type Segment = [(i32, i32); 2];
+pub(in crate::bench) type Segment = [(i32, i32); 2];
 
 /// Height of a label, the mean width of its characters, and the room around it, pixels; fonts differ, so all are generous.
 const LABEL_HEIGHT: i32 = 14;
@@ -132,18 +132,18 @@ const LABEL_ROOM: i32 = 3;
 
 impl Places {
     /// Places within `frame` that keep clear of markers and lines.
-    pub(super) fn new(frame: Area, markers: Vec<Area>, segments: Vec<Segment>) -> Places {
+    pub(in crate::bench) fn new(frame: Area, markers: Vec<Area>, segments: Vec<Segment>) -> Places {
         Places { frame, taken: markers, segments }
     }
 
     /// Keeps clear of these too.
-    pub(super) fn take(&mut self, areas: impl Iterator<Item = Area>, segments: Vec<Segment>) {
+    pub(in crate::bench) fn take(&mut self, areas: impl Iterator<Item = Area>, segments: Vec<Segment>) {
         self.taken.extend(areas);
         self.segments.extend(segments);
     }
 
     /// The centre of a label near `point`, where it hides least; the place is taken from then on.
-    pub(super) fn find(&mut self, point: (i32, i32), text: &str) -> (i32, i32) {
+    pub(in crate::bench) fn find(&mut self, point: (i32, i32), text: &str) -> (i32, i32) {
         let half_width = (0.5 * LABEL_CHARACTER * text.chars().count() as f64).ceil() as i32 + LABEL_ROOM;
         let half_height = LABEL_HEIGHT / 2;
         let aside = half_width + 6;

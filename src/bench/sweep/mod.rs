@@ -6,8 +6,8 @@
 //!                   ids, shards)   one by one)     merged)
 //! ```
 
-mod canvas;
-mod chart;
+pub(super) mod canvas;
+pub(super) mod chart;
 mod csv;
 mod execute;
 mod fit;

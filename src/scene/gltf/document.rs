@@ -396,6 +396,15 @@ pub(super) struct Channel {
 pub(super) struct Target {
     pub(super) node: Option<usize>,
     pub(super) path: String,
+    #[serde(default)]
+    extensions: Value,
+}
+
+impl Target {
+    /// What KHR_animation_pointer points to.
+    pub(super) fn pointer(&self) -> Option<&str> {
+        self.extensions["KHR_animation_pointer"]["pointer"].as_str()
+    }
 }
 
 #[derive(Deserialize)]

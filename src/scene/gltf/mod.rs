@@ -10,6 +10,7 @@ mod container;
 mod document;
 mod files;
 mod images;
+mod light_animation;
 mod loader;
 mod materials;
 mod nodes;
@@ -27,7 +28,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Extensions that are understood.
-const SUPPORTED_EXTENSIONS: [&str; 9] = [
+const SUPPORTED_EXTENSIONS: [&str; 10] = [
+    "KHR_animation_pointer",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -144,7 +146,7 @@ impl Loader<'_> {
         let meshes = self.read_meshes(&mesh_indices)?;
         let materials = self.add_materials(&meshes)?;
         let mesh_ids = self.add_meshes(&mesh_indices, meshes, &materials)?;
-        let node_ids = self.add_nodes(&tree, &mesh_ids)?;
-        self.add_animations(&tree, &node_ids)
+        let (node_ids, light_ids) = self.add_nodes(&tree, &mesh_ids)?;
+        self.add_animations(&tree, &node_ids, &light_ids)
     }
 }

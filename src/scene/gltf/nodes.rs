@@ -16,6 +16,9 @@ pub(super) struct Branch<'a> {
     pub(super) node: &'a document::Node,
 }
 
+/// The lights that nodes place, by their numbers in the file; `None` for those that are left out.
+pub(super) type LightIds = HashMap<usize, Option<LightId>>;
+
 impl<'a> Loader<'a> {
     /// All nodes below the active scene's roots, depth first. A node that is reached twice, hence every cycle, is a fault.
     pub(super) fn read_tree(&mut self) -> Result<Vec<Branch<'a>>, String> {
@@ -55,9 +58,9 @@ impl<'a> Loader<'a> {
         &mut self,
         tree: &[Branch],
         meshes: &HashMap<usize, MeshId>,
-    ) -> Result<Vec<NodeId>, String> {
+    ) -> Result<(Vec<NodeId>, LightIds), String> {
         let mut ids = Vec::with_capacity(tree.len());
-        let (mut cameras, mut lights) = (HashMap::new(), HashMap::new());
+        let (mut cameras, mut lights) = (HashMap::new(), LightIds::new());
         let mut skinned = 0;
         for branch in tree {
             let node = branch.node;
@@ -78,7 +81,7 @@ impl<'a> Loader<'a> {
         if skinned > 0 {
             self.warn(format!("skins are not supported: {skinned} skinned meshes are shown as they were modelled"));
         }
-        Ok(ids)
+        Ok((ids, lights))
     }
 
     /// A light that is not valid is left out: the rest of the scene is sound without it.
@@ -100,7 +103,12 @@ impl<'a> Loader<'a> {
     }
 
     /// Adds all animations, without the channels that move nothing in the active scene or are not valid.
-    pub(super) fn add_animations(&mut self, tree: &[Branch], ids: &[NodeId]) -> Result<(), String> {
+    pub(super) fn add_animations(
+        &mut self,
+        tree: &[Branch],
+        ids: &[NodeId],
+        light_ids: &LightIds,
+    ) -> Result<(), String> {
         let nodes: HashMap<usize, usize> = tree.iter().enumerate().map(|(at, branch)| (branch.index, at)).collect();
         for index in 0..self.document.animations.len() {
             let animation = match get(&self.document.animations, index, "animation") {
@@ -110,7 +118,7 @@ impl<'a> Loader<'a> {
                     continue;
                 }
             };
-            let mut channels = Vec::new();
+            let (mut channels, mut lights) = (Vec::new(), Vec::new());
             let mut poses = BTreeMap::new();
             for number in 0..animation.channels.len() {
                 match self.read_channel(animation, number, &nodes) {
@@ -119,12 +127,15 @@ impl<'a> Loader<'a> {
                         poses.insert(ids[at], pose(tree[at].node));
                         channels.push(channel);
                     }
-                    Ok(None) => {}
+                    Ok(None) => match self.read_light_channel(animation, number, light_ids) {
+                        Ok(channel) => lights.extend(channel),
+                        Err(fault) => self.warn(format!("animation {index}, channel {number} is left out: {fault}")),
+                    },
                     Err(fault) => self.warn(format!("animation {index}, channel {number} is left out: {fault}")),
                 }
             }
-            if !channels.is_empty() {
-                let animation = Animation { name: animation.name.clone().unwrap_or_default(), channels };
+            if !channels.is_empty() || !lights.is_empty() {
+                let animation = Animation { name: animation.name.clone().unwrap_or_default(), channels, lights };
                 self.scene.add_animation(animation).map_err(|error| error.to_string())?;
                 poses
                     .into_iter()
@@ -147,30 +158,21 @@ impl<'a> Loader<'a> {
             "translation" => Property::Translation,
             "rotation" => Property::Rotation,
             "scale" => Property::Scale,
-            // Morph weights, and properties of extensions, which are warned of elsewhere.
+            // Morph weights, and what is no part of a node.
             _ => return Ok(None),
         };
         let Some(&at) = channel.target.node.and_then(|node| nodes.get(&node)) else {
             return Ok(None);
         };
         let sampler = get(&animation.samplers, channel.sampler, "sampler")?;
-        let (interpolation, values_per_key) = match sampler.interpolation.as_deref() {
-            None | Some("LINEAR") => (Interpolation::Linear, 1),
-            Some("STEP") => (Interpolation::Step, 1),
-            Some("CUBICSPLINE") => (Interpolation::CubicSpline, 3),
-            Some(other) => return Err(format!("its interpolation {other:?} is not known")),
-        };
-        let times = self.accessors.scalars(sampler.input)?;
+        let (interpolation, values_per_key) = interpolation_of(sampler)?;
+        let times = self.times(sampler)?;
         let values: Vec<[f32; 4]> = if property == Property::Rotation {
             self.accessors.vectors::<4>(sampler.output, Integers::Normalized)?
         } else {
             let vectors = self.accessors.vectors::<3>(sampler.output, Integers::Normalized)?;
             vectors.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()
         };
-        let grows = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
-        if times.is_empty() || !grows {
-            return Err("its times do not grow".into());
-        }
         if values.len() != times.len() * values_per_key {
             return Err(format!("it has {} values for {} times", values.len(), times.len()));
         }
@@ -178,6 +180,23 @@ impl<'a> Loader<'a> {
             return Err("a value is not finite".into());
         }
         Ok(Some((at, Channel { node: NodeId(0), property, interpolation, times, values })))
+    }
+
+    /// The times of a sampler's keyframes.
+    pub(super) fn times(&self, sampler: &document::AnimationSampler) -> Result<Vec<f32>, String> {
+        let times = self.accessors.scalars(sampler.input)?;
+        let grows = times.is_sorted_by(|a, b| a < b) && times.iter().all(|time| time.is_finite());
+        if times.is_empty() || !grows { Err("its times do not grow".into()) } else { Ok(times) }
+    }
+}
+
+/// How a sampler interpolates, and how many values a keyframe of it has.
+pub(super) fn interpolation_of(sampler: &document::AnimationSampler) -> Result<(Interpolation, usize), String> {
+    match sampler.interpolation.as_deref() {
+        None | Some("LINEAR") => Ok((Interpolation::Linear, 1)),
+        Some("STEP") => Ok((Interpolation::Step, 1)),
+        Some("CUBICSPLINE") => Ok((Interpolation::CubicSpline, 3)),
+        Some(other) => Err(format!("its interpolation {other:?} is not known")),
     }
 }
 
