@@ -159,6 +159,18 @@ pub struct Run {
     /// `noise_full` of blocks of 8×8 pixels.
     #[serde(default)]
     pub block_noise_full: Option<BTreeMap<String, f64>>,
+    /// Light in rooms that none gets into; absent if the scene names no such room.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leaks: Option<Leaks>,
+}
+
+/// Light in rooms that none gets into.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Leaks {
+    /// The power of all lights, W, the three channels together.
+    pub emitted_w: f64,
+    /// By the camera that stands in the room and by slot: what arrives at the surfaces that it shows, over what is emitted.
+    pub rooms: BTreeMap<String, BTreeMap<Slot, f64>>,
 }
 
 /// One pass of a run.
