@@ -325,6 +325,10 @@ class Scene:
         values.append(value)
         return len(values) - 1
 
+    def dark(self, *cameras):
+        """Says that these cameras stand in rooms that no light gets into."""
+        self.document["asset"]["extras"]["dark"] = cameras
+
     def extension(self, name, value):
         self.used.add(name)
         return {name: value}
@@ -691,6 +695,7 @@ def leak(s):
     s.camera("thick", (2.2, 1.6, 0.8), (0.5, 1.0, -0.3), 70)
     s.camera("sealed", (1.75, 1.7, 3.5), (0.7, 0.8, 2.2), 75)
     s.camera("lit", (-2.7, 1.9, -3.1), (0.2, 0.8, 2.4), 65)
+    s.dark("thin", "thick", "sealed")
 
 
 def maze_walls(size):

@@ -78,12 +78,12 @@ int cascade_of_address(Cascades cascades, uint address) {
     return int(address) / (cascades.resolution * cascades.resolution * cascades.resolution);
 }
 
-vec3 position_of_address(Cascades cascades, uint address) {
+// The node's number along each axis, counted from the anchor: the same in all frames.
+ivec3 node_of_address(Cascades cascades, uint address) {
     int side = cascades.resolution;
     int index = int(address);
     ivec3 node = ivec3(index % side, index / side % side, index / (side * side) % side);
-    int cascade = cascade_of_address(cascades, address);
-    return cascades.anchor_rs + (first_node(cascades, cascade) + vec3(node)) * cell_of_cascade(cascades, cascade);
+    return ivec3(first_node(cascades, cascade_of_address(cascades, address))) + node;
 }
 
 #endif

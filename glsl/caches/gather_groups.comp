@@ -51,6 +51,6 @@ void main() {
         float radius = 2.0 * sqrt(max(squares / weights - dot(mean, mean), 0.0));
         uint count = next - before.x;
         groups[2u * before.y] = floatBitsToUint(vec4(base + mean, radius));
-        groups[2u * before.y + 1u] = uvec4(before.x, count, 0u, 0u);
+        groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(weights), 0u);
     }
 }

@@ -1,6 +1,6 @@
 // Groups of virtual area lights that share one visibility: the lit ones among 4^lod neighbours along Morton's curve, a square of the light view. Two texels (rgba32ui) each:
 //   [2g]     the mean position_rs by flux, and the radius of a sphere around it, as floats' bits
-//   [2g + 1] the first light, how many
+//   [2g + 1] the first light, how many, and the sum of their luminances as a float's bits
 #ifndef CACHES_LIGHT_GROUPS
 #define CACHES_LIGHT_GROUPS
 

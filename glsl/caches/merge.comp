@@ -112,5 +112,5 @@ void main() {
     float radius = 2.0 * sqrt(max(squares / max(weights, 1e-37) - dot(mean, mean), 0.0));
     uint count = next - before.x;
     groups[2u * before.y] = floatBitsToUint(vec4(base + mean, radius));
-    groups[2u * before.y + 1u] = uvec4(before.x, count, 0u, 0u);
+    groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(weights), 0u);
 }

@@ -9,19 +9,37 @@
 #define VOLUMES_IRRADIANCE
 
 #include "groups/light_caches.glsl"
+#include "lib/color.glsl"
 #include "lib/spherical_harmonics.glsl"
 #include "caches/rays.glsl"
 #include "caches/weights.glsl"
+#include "volumes/numbers.glsl"
 
-layout(constant_id = 0) const uint BANDS = 3u;
-
-const int TEXELS = BANDS == 3u ? 7 : 3;
+// `grey` of the luminance, in the colour of band 0.
+vec3 in_colour(vec3 band_0, float grey) {
+    return band_0 * (grey / max(luminance(band_0), 1e-37));
+}
 
 // Σ A_l c_lm y_lm(n) of the cache's three channels, by the weights.
 vec3 irradiance_from(int cache, vec4 low, vec4 high, float last) {
     int first = TEXELS * cache;
     vec3 sum;
-    if (BANDS == 3u) {
+    if (CHROMA == 1u) {
+        vec4 band_0 = texelFetch(light, first);
+        float grey = dot(texelFetch(light, first + 1).xyz, low.yzw);
+        if (BANDS == 3u) {
+            grey += dot(texelFetch(light, first + 2), high) + last * band_0.w;
+        }
+        sum = low.x * band_0.rgb + in_colour(band_0.rgb, grey);
+    } else if (BANDS == 3u && CHROMA == 2u) {
+        vec3 band_0;
+        for (int channel = 0; channel < 3; ++channel) {
+            vec4 own = texelFetch(light, first + channel);
+            band_0[channel] = own.x;
+            sum[channel] = dot(own, low);
+        }
+        sum += in_colour(band_0, dot(texelFetch(light, first + 3), high) + last * texelFetch(light, first + 4).x);
+    } else if (BANDS == 3u) {
         for (int channel = 0; channel < 3; ++channel) {
             sum[channel] = dot(texelFetch(light, first + 2 * channel), low) + dot(texelFetch(light, first + 2 * channel + 1), high);
         }

@@ -8,31 +8,46 @@
 #include "lib/spherical_harmonics.glsl"
 #include "lib/disc.glsl"
 #include "lib/weighted_draw.glsl"
+#include "lib/color.glsl"
+#include "caches/light_nodes.glsl"
 #include "caches/rays.glsl"
+#include "volumes/numbers.glsl"
 
 // One group of invocations a cache: the light that comes to it from all virtual area lights, as spherical harmonics of two or three bands (Reich 2015, section 4.3.2),
 //
 //   c_lm = Σ_i V_g(i) · Φ_i/π · |F_i| · y_lm(F_i/|F_i|)        W/m²
 //
 // F_i the light's vector of form factors (lib/disc.glsl), V_g the visibility of its group. The paper has (n_i·−ω_i)⁺ / (d_i² + A_i) along the unit vector ω_i towards the light. A
-// cache's light depends on where it lies and on what asks for it. Each invocation takes every 64th group of lights; then one invocation for each number adds up what they found, in a fixed order.
-// The numbers of a cache are texels of four: of three bands red 0–3, red 4–7, green 0–3, …, blue 4–7, and the last of red, green and blue; of two bands red, green, blue.
+// cache's light depends on where it lies and on what asks for it. Each invocation takes every 64th group of lights; then one invocation for each number (volumes/numbers.glsl) adds up
+// what they found, in a fixed order.
+//
+// `together`: neighbouring groups share a visibility where the cache sees them under an aperture that is small enough: adaptive shadow LOD, as the thesis' section 6.3 names it. Of 64
+// neighbouring groups, which are at work at the same time, those of one node of the largest level that is small enough draw one light, by what each gives to the cache, and whoever of the invocations is
+// free sends its ray or its cone.
 
-layout(constant_id = 0) const uint BANDS = 3u;
 // 1: the paper's lights, from all around.
 layout(constant_id = 3) const uint PAPER = 0u;
+// 1: caches are those of a list.
+layout(constant_id = 4) const uint LISTED = 0u;
+// 1: groups are taken together.
+layout(constant_id = 6) const uint TOGETHER = 0u;
 
 layout(set = 0, binding = 0) buffer LightBlock { float light[]; };
+layout(set = 0, binding = 1) buffer SentBlock { uint sent[]; };      // rays or cones
+layout(set = 0, binding = 2) readonly buffer DueBlock { uint due[]; };  // volumes/carry.comp
+layout(set = 0, binding = 3) uniform samplerBuffer light_nodes;      // caches/light_nodes.glsl
 
 layout(push_constant, scalar) uniform Push {
     CacheRays rays;
     int first_group;
     int end_group;
     uint capacity;
-    uint adds;  // 1: to what the cache holds
+    uint adds;        // 1: to what the cache holds
+    int group_count;  // that there is room for
+    float aperture;   // the sine of half of it
 } push;
 
-const uint NUMBERS = BANDS == 3u ? 28u : 12u;
+const uint NUMBERS = 4u * uint(TEXELS);
 
 shared float found[64 * 28];
 
@@ -84,11 +99,67 @@ bool is_above_any(vec3 way) {
     return above;
 }
 
+shared uint shared_sent;
+
 struct Sums {
     mat3x4 low;    // a column for red, green, blue
     mat3x4 high;
     vec3 last;
+    vec4 grey_low;  // of the luminance
+    vec4 grey_high;
+    float grey_last;
 };
+
+void add(inout Sums sums, vec3 direction, vec3 received) {
+    float grey = luminance(received);
+    vec4 low = harmonics_of_low_bands(direction);
+    sums.low += outerProduct(low, received);
+    sums.grey_low += grey * low;
+    if (BANDS == 3u) {
+        vec4 high = harmonics_of_band_2(direction);
+        float last = last_harmonic(direction);
+        sums.high += outerProduct(high, received);
+        sums.last += last * received;
+        sums.grey_high += grey * high;
+        sums.grey_last += grey * last;
+    }
+}
+
+// What is not kept the compiler drops.
+void put(uint first, Sums sums) {
+    if (CHROMA == 1u) {
+        for (uint channel = 0u; channel < 3u; ++channel) {
+            found[first + channel] = sums.low[channel].x;
+            found[first + 4u + channel] = sums.grey_low[channel + 1u];
+        }
+        found[first + 3u] = BANDS == 3u ? sums.grey_last : 0.0;
+        found[first + 7u] = 0.0;
+    } else {
+        uint stride = CHROMA == 3u ? 8u : 4u;
+        for (uint channel = 0u; channel < 3u; ++channel) {
+            for (uint number = 0u; number < 4u; ++number) {
+                found[first + channel * stride + number] = sums.low[channel][number];
+                if (CHROMA == 3u) {
+                    found[first + channel * stride + 4u + number] = sums.high[channel][number];
+                }
+            }
+        }
+    }
+    if (CHROMA == 3u) {
+        for (uint channel = 0u; channel < 3u; ++channel) {
+            found[first + 24u + channel] = sums.last[channel];
+        }
+        found[first + 27u] = 0.0;
+    } else if (BANDS == 3u) {
+        uint high = CHROMA == 2u ? 12u : 8u;
+        for (uint number = 0u; number < 4u; ++number) {
+            found[first + high + number] = sums.grey_high[number];
+            if (CHROMA == 2u) {
+                found[first + 16u + number] = number == 0u ? sums.grey_last : 0.0;
+            }
+        }
+    }
+}
 
 // Φ/π · |F|, and the unit vector along F.
 vec3 light_from(Vpl light, vec3 position_rs, out vec3 direction) {
@@ -113,7 +184,8 @@ float about_given(Vpl light, vec3 position_rs) {
 const int KNOWN_LIGHTS = 32;
 
 struct Target {
-    int light;   // -1: none gives anything
+    int light;    // -1: none gives anything
+    float given;  // by all of the group
     uint gives;
 };
 
@@ -129,7 +201,7 @@ Target target_of(LightGroup group, uint number, vec3 position_rs) {
             gives |= index - group.first < KNOWN_LIGHTS ? 1u << (index - group.first) : 0u;
         }
     }
-    return Target(draw.drawn, gives);
+    return Target(draw.drawn, draw.sum, gives);
 }
 
 bool gives(Target target, LightGroup group, int index, vec3 position_rs) {
@@ -137,10 +209,51 @@ bool gives(Target target, LightGroup group, int index, vec3 position_rs) {
     return place < KNOWN_LIGHTS ? (target.gives >> place & 1u) != 0u : about_given(load_area_light(index), position_rs) > 0.0;
 }
 
+// What the lights of a group that is seen so well give.
+void add_group(inout Sums sums, Target target, LightGroup group, float visibility, vec3 position_rs) {
+    for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
+        if (gives(target, group, number, position_rs)) {
+            vec3 direction;
+            vec3 received = visibility * light_from(load_area_light(number), position_rs, direction);
+            add(sums, direction, received);
+        }
+    }
+}
+
+// Every 64th group, each with a visibility of its own; returns how many were asked for.
+uint add_groups(inout Sums sums, int end, vec3 position_rs) {
+    uint asked = 0u;
+    for (int index = push.first_group + int(gl_LocalInvocationIndex); index < end; index += 64) {
+        LightGroup group = load_light_group(area_light_groups, index);
+        Target target = target_of(group, uint(index), position_rs);
+        if (target.light >= 0) {
+            ++asked;
+            float visibility = visibility_of_group(push.rays, group, load_area_light(target.light), position_rs);
+            add_group(sums, target, group, visibility, position_rs);
+        }
+    }
+    return asked;
+}
+
+#include "volumes/together.glsl"
+
+// The cache that the invocations work for, and how many there are.
+uint cache_of_group(out uint count) {
+    uint number = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint caches = min(texelFetch(cache_head, 3).x, push.capacity);
+    if (LISTED == 0u) {
+        count = caches;
+        return number;
+    }
+    count = min(due[3], caches);
+    return number < count ? due[4u + number] : 0u;
+}
+
 void light_cache() {
     uint self = gl_LocalInvocationIndex;
-    uint cache = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (cache >= min(texelFetch(cache_head, 3).x, push.capacity)) {
+    uint count;
+    uint cache = cache_of_group(count);
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= count) {
         return;
     }
     int end = min(push.end_group, int(texelFetch(area_light_counts, 1).x));
@@ -151,43 +264,16 @@ void light_cache() {
     if (PAPER == 0u) {
         load_horizons(cache);
     }
-    Sums sums = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0));
-    for (int index = push.first_group + int(self); index < end; index += 64) {
-        LightGroup group = load_light_group(area_light_groups, index);
-        Target target = target_of(group, uint(index), position_rs);
-        if (target.light < 0) {
-            continue;
-        }
-        float visibility = visibility_of_group(push.rays, group, load_area_light(target.light), position_rs);
-        for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
-            if (gives(target, group, number, position_rs)) {
-                vec3 direction;
-                vec3 received = visibility * light_from(load_area_light(number), position_rs, direction);
-                sums.low += outerProduct(harmonics_of_low_bands(direction), received);
-                if (BANDS == 3u) {
-                    sums.high += outerProduct(harmonics_of_band_2(direction), received);
-                    sums.last += last_harmonic(direction) * received;
-                }
-            }
-        }
+    if (self == 0u) {
+        shared_sent = 0u;
     }
-    uint first = self * NUMBERS;
-    uint stride = BANDS == 3u ? 8u : 4u;
-    for (uint channel = 0u; channel < 3u; ++channel) {
-        for (uint number = 0u; number < 4u; ++number) {
-            found[first + channel * stride + number] = sums.low[channel][number];
-            if (BANDS == 3u) {
-                found[first + channel * stride + 4u + number] = sums.high[channel][number];
-            }
-        }
-        if (BANDS == 3u) {
-            found[first + 24u + channel] = sums.last[channel];
-        }
-    }
-    if (BANDS == 3u) {
-        found[first + 27u] = 0.0;
-    }
+    Sums sums = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0), vec4(0.0), vec4(0.0), 0.0);
+    uint asked = TOGETHER != 0u ? add_nodes(sums, end, position_rs) : add_groups(sums, end, position_rs);
+    put(self * NUMBERS, sums);
     barrier();
+    if (asked > 0u) {
+        atomicAdd(shared_sent, asked);
+    }
     if (self < NUMBERS) {
         float sum = 0.0;
         [[dont_unroll]] for (int lane = 0; lane < 64; ++lane) {
@@ -195,6 +281,10 @@ void light_cache() {
         }
         uint place = cache * NUMBERS + self;
         light[place] = push.adds != 0u ? light[place] + sum : sum;
+    }
+    barrier();
+    if (self == 0u && shared_sent > 0u) {
+        atomicAdd(sent[0], shared_sent);
     }
 }
 

@@ -5,6 +5,8 @@
 //!  │      (one technique's frames) ▲ (JSON)  (what a table says)
 //!  ├────▶ alone ──────────────────┤
 //!  │      (pieces on their own)    │
+//!  ├────▶ leaks ──────────────────┤
+//!  │      (in rooms without light) │
 //!  └────▶ errors ─────────────────┘
 //!         (against references)
 //! ```
@@ -15,6 +17,7 @@ mod alone;
 pub mod comparison;
 mod error_rows;
 mod errors;
+pub(crate) mod leaks;
 pub mod over_time;
 pub mod report;
 pub mod rows;

@@ -163,6 +163,18 @@ pub struct Run {
     /// The frames one by one, if a sequence was played: then spreads are over its frames, and errors are those of the frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
+    /// Light in rooms that none gets into; absent if the scene names no such room.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leaks: Option<Leaks>,
+}
+
+/// Light in rooms that none gets into.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Leaks {
+    /// The power of all lights, W, the three channels together.
+    pub emitted_w: f64,
+    /// By the camera that stands in the room and by slot: what arrives at the surfaces that it shows, over what is emitted.
+    pub rooms: BTreeMap<String, BTreeMap<Slot, f64>>,
 }
 
 /// One pass of a run.

@@ -1,11 +1,14 @@
 //! What a table says of a run, row by row; text, Markdown and CSV differ only in how they write it down.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::over_time::OverTime;
-use super::report::{Pass, Piece, PieceAlone, Run};
+use super::report::{Leaks, Pass, Piece, PieceAlone, Run};
 use super::statistics::Spread;
 use super::units;
+use crate::renderer::Slot;
 
 /// What a row is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,8 +133,20 @@ pub fn rows(run: &Run) -> Vec<Row> {
     rows.push(Row { ms: Some(run.compile_ms), ..Row::frame("compile").text(compile) });
     rows.push(Row::frame("memory").text(memory(run)));
     rows.extend(memory_rows(run));
+    rows.extend(run.leaks.as_ref().map(|leaks| Row::frame("leaks").text(leaked(leaks))));
     rows.push(Row::frame("settings").text(settings(run)));
     rows
+}
+
+/// What arrives in dark rooms over what is emitted, of slots that let any through.
+fn leaked(leaks: &Leaks) -> String {
+    let room = |(camera, slots): (&String, &BTreeMap<Slot, f64>)| {
+        let slots = slots.iter().filter(|(_, share)| **share != 0.0);
+        let slots: Vec<String> = slots.map(|(slot, share)| format!("{slot} {share:.1e}")).collect();
+        format!("{camera}: {}", if slots.is_empty() { "none".to_owned() } else { slots.join(", ") })
+    };
+    let rooms: Vec<String> = leaks.rooms.iter().map(room).collect();
+    format!("of all light in dark rooms: {}", rooms.join("; "))
 }
 
 /// A piece or level, then what it holds in the order of the passes; of one that holds a single pass that pass alone. `within` are the rows above.
@@ -338,6 +353,16 @@ mod tests {
             assert!(alone.text.contains(words), "{words} is not in {}", alone.text);
         }
         assert_eq!((skipped.skipped, &*skipped.text, skipped.ms), (true, "no light", None));
+    }
+
+    #[test]
+    fn leaks_stand_room_by_room_and_slot_by_slot() {
+        let slots = |direct: f64, diffuse: f64| BTreeMap::from([(Slot::Direct, direct), (Slot::Diffuse, diffuse)]);
+        let room = |name: &str, direct, diffuse| (name.to_owned(), slots(direct, diffuse));
+        let rooms = BTreeMap::from([room("sealed", 0.0, 0.0), room("thin", 0.0, 0.00125)]);
+        let rows = rows(&Run { leaks: Some(Leaks { emitted_w: 2.0, rooms }), ..Run::default() });
+        let row = rows.iter().find(|row| row.name == "leaks").expect("a row");
+        assert_eq!(row.text, "of all light in dark rooms: sealed: none; thin: diffuse 1.3e-3");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::alone::{not_repeated, repeated};
+use super::leaks::leaks;
 use super::report::{Failure, PieceAlone, Run};
 use super::samples::Samples;
 use crate::renderer::{
@@ -106,7 +107,7 @@ struct Contender {
 /// 2. a frame made anew, timed pass by pass;
 /// 3. a frame in which nothing has changed, timed as a whole.
 ///
-/// No image is read back in these. Then come the pictures, pieces are repeated on their own, as often as there are rounds, and last, where something
+/// No image is read back in these. Then come the pictures, pieces are repeated on their own, as often as there are rounds, dark rooms are looked into, and last, where something
 /// is kept over frames, as many frames are made without a past. `progress` is called after every frame of the rounds and every piece. A contender that fails does not stop the others; a piece that none of them has fails them all.
 pub fn run(
     context: &Context,
@@ -199,6 +200,7 @@ impl Contender {
             progress();
         }
         let lead_in = options.lead_in(settings);
+        let leaks = leaks(&mut renderer, subject.scene, lead_in).map_err(|error| failure(sentence(&*error)))?;
         if lead_in > 0 {
             cold(&mut renderer, &mut samples, subject, options).map_err(|error| failure(sentence(&*error)))?;
         }
@@ -216,6 +218,7 @@ impl Contender {
             load_ms: subject.load_ms,
             triangles: subject.scene.facts().triangles,
             piece_alone,
+            leaks,
             ..Run::default()
         });
         Ok(Finished { run, picture, images })

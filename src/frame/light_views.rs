@@ -12,6 +12,27 @@ use crate::graph::bindings::{ImageRef, SampledImage};
 use crate::graph::{ClearColor, Dependence, Graph};
 use crate::shaders::{groups, light_views, types};
 
+/// Of which lights there are views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Views {
+    #[default]
+    None,
+    /// Of punctual ones alone, not of samples of emissive surfaces and of the sky.
+    Punctual,
+    All,
+}
+
+impl Views {
+    /// How many of the set's views: punctual lights come first.
+    fn count(self, set: &LightSet) -> usize {
+        match self {
+            Views::None => 0,
+            Views::Punctual => set.views_of(true).len(),
+            Views::All => set.views_of(false).len(),
+        }
+    }
+}
+
 /// The lights and their views on the device.
 #[derive(Clone)]
 pub(crate) struct LightViews {
@@ -37,20 +58,21 @@ pub(crate) struct ReflectiveViews {
     pub(crate) flux: ImageRef,
 }
 
-/// Declares the views; `reflective` asks for normals and flux besides depth.
+/// Declares the views: of which lights depth is wanted, and of which normals and flux besides.
 pub(crate) fn light_views(
     graph: &mut Graph<'_>,
     data: &SceneData,
     geometry: &Geometry,
     set: &LightSet,
-    reflective: bool,
+    (depth_of, flux_of): (Views, Views),
 ) -> LightViews {
     let size = set.atlas.size.map(|side| side.max(1));
     let records: Vec<types::LightView> = set.atlas.views.iter().map(|view| view.record).collect();
     let lights = graph.upload("light_views.lights", &set.lights, Dependence::LIGHTS);
     let views = graph.upload("light_views.views", &records, Dependence::LIGHTS);
     let depth = graph.image("light_views.depth", vk::Format::D32_SFLOAT, size);
-    let reflective = reflective.then(|| ReflectiveViews {
+    let reflective_count = flux_of.count(set);
+    let reflective = (flux_of == Views::All || reflective_count > 0).then(|| ReflectiveViews {
         normal: graph.image("light_views.normal", vk::Format::R32_UINT, size),
         flux: graph.image("light_views.flux", vk::Format::R32G32B32A32_SFLOAT, size),
     });
@@ -62,10 +84,14 @@ pub(crate) fn light_views(
         light_flux: SampledImage::of(reflective.map(|views| views.flux)),
     };
     let mut made = LightViews { light_count: lights.count() as u32, group, depth, drawn_depth: depth, reflective };
-    let draw_views = draw_views(set);
-    match reflective {
-        Some(targets) => draw_reflective(graph, data, geometry, &made, targets, &draw_views),
-        None => draw_depth(graph, data, geometry, &made, &draw_views),
+    let mut draw_views = draw_views(set);
+    draw_views.truncate(depth_of.max(flux_of).count(set));
+    let (reflecting, others) = draw_views.split_at(reflective_count);
+    if let Some(targets) = reflective {
+        draw_reflective(graph, data, geometry, &made, targets, reflecting);
+    }
+    if reflective.is_none() || !others.is_empty() {
+        draw_depth(graph, data, geometry, &made, others);
     }
     let drawn = (&made.group, &draw_views[..]);
     made.depth = plane_depth::of_lights(graph, data, geometry, drawn, depth);
@@ -89,7 +115,9 @@ fn draw_view(index: u32, view: &super::view_layout::LaidOutView) -> DrawView {
     )
 }
 
+/// Beside views with flux, which were drawn before, those without.
 fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made: &LightViews, views: &[DrawView]) {
+    let clear = made.reflective.is_none().then_some(0.0);
     let solid = |drawn: &DrawnInstance| !(drawn.masked && drawn.textured);
     let depth = light_views::Depth {
         geometry: geometry.clone(),
@@ -98,7 +126,7 @@ fn draw_depth(graph: &mut Graph<'_>, data: &SceneData, geometry: &Geometry, made
     };
     let list = draw_list(data, Attributes::Depth, views, solid);
     let pass = graph.raster("light-views/depth", depth, Attributes::Depth.raster_state(data));
-    pass.note("views", views.len() as u64).depth(made.drawn_depth, Some(0.0)).draw(list);
+    pass.note("views", views.len() as u64).depth(made.drawn_depth, clear).draw(list);
     if data.drawn.iter().all(solid) {
         graph.skip("light-views/depth-masked", "no surface cut out by its alpha");
         return;

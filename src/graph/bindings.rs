@@ -314,6 +314,12 @@ impl TexelBuffer {
     }
 }
 
+impl<T> ReadBuffer<T> {
+    pub(crate) fn absent() -> ReadBuffer<T> {
+        ReadBuffer(None, PhantomData)
+    }
+}
+
 impl<T> ReadWriteBuffer<T> {
     pub(crate) fn absent() -> ReadWriteBuffer<T> {
         ReadWriteBuffer(None, PhantomData)

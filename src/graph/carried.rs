@@ -3,8 +3,9 @@
 //!
 //! The key has to name all that the content depends on, and both ways have to leave the same.
 
-use super::bindings::BufferRef;
+use super::bindings::{BufferRef, ImageRef};
 use super::declare::Graph;
+use super::key::hash_of;
 use super::resource::Body;
 
 impl Graph<'_> {
@@ -30,6 +31,11 @@ impl Graph<'_> {
     /// The key of what the passes that are declared so far leave in a buffer: it names all that this depends on.
     pub(crate) fn key_of<T>(&self, buffer: BufferRef<T>) -> u64 {
         self.resources[buffer.id].content[0].0
+    }
+
+    /// The same of all parts of an image.
+    pub(crate) fn key_of_image(&self, image: ImageRef) -> u64 {
+        hash_of(&self.resources[image.id].content.iter().map(|content| content.0).collect::<Vec<u64>>())
     }
 
     /// Lets passes start from the content `key` of a buffer, which memory holds ([`Graph::finds`]).

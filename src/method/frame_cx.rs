@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::frame::caches::{AreaLights, CacheSettings, Caches, allocate, area_lights};
 use crate::frame::inputs::FrameInputs;
-use crate::frame::light_views::LightViews;
+use crate::frame::light_views::{LightViews, Views};
 use crate::frame::rays::TracedScene;
 use crate::frame::voxels::{VoxelSettings, Voxels, voxels};
 use crate::graph::Graph;
@@ -15,9 +15,9 @@ use crate::shaders::types::CacheRays;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Inputs {
     /// Light views with their depth.
-    pub(crate) light_depth: bool,
+    pub(crate) light_depth: Views,
     /// What their texels reflect.
-    pub(crate) light_flux: bool,
+    pub(crate) light_flux: Views,
     pub(crate) rays: Rays,
     /// The diffuse light at what mirrors show, if the method of the slot `diffuse` offers it.
     pub(crate) mirrored_light: bool,
@@ -31,8 +31,8 @@ impl Inputs {
     /// What two methods take together.
     pub(crate) fn and(self, other: Inputs) -> Inputs {
         Inputs {
-            light_depth: self.light_depth || other.light_depth,
-            light_flux: self.light_flux || other.light_flux,
+            light_depth: self.light_depth.max(other.light_depth),
+            light_flux: self.light_flux.max(other.light_flux),
             rays: self.rays.max(other.rays),
             mirrored_light: self.mirrored_light || other.mirrored_light,
             caches: self.caches || other.caches,
@@ -41,7 +41,7 @@ impl Inputs {
     }
 
     pub(crate) fn light_views(self) -> bool {
-        self.light_depth || self.light_flux
+        self.light_depth.max(self.light_flux) != Views::None
     }
 }
 
@@ -81,8 +81,7 @@ impl<'f, 's> FrameCx<'f, 's> {
 
     /// Light caches; methods that ask alike share them.
     pub(crate) fn caches(&mut self, settings: &CacheSettings) -> Rc<Caches> {
-        let rule = (settings.cascades, settings.moves);
-        self.shared(rule, |cx, (rule, moves)| allocate(cx.graph, cx.frame, rule, *moves))
+        self.shared(settings.places, |cx, rule| allocate(cx.graph, cx.frame, rule))
     }
 
     /// The scene as rays to and from light caches meet it; absent in a frame whose method sends none.

@@ -150,7 +150,8 @@ impl Shared {
         inputs: Inputs,
         settings: &Settings,
     ) -> FrameInputs<'a> {
-        let lights = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, inputs.light_flux));
+        let of = (inputs.light_depth, inputs.light_flux);
+        let lights = inputs.light_views().then(|| light_views(graph, data, &self.geometry, set, of));
         FrameInputs {
             data,
             facts: &self.facts,

@@ -6,6 +6,7 @@ use ash::vk;
 use super::methods::{Filler, all_methods};
 use super::settings::Settings;
 use super::technique::Technique;
+use crate::frame::light_views::Views;
 use crate::method::{Inputs, Preset};
 use crate::shaders::PROGRAMS;
 use crate::slot::Slot;
@@ -50,9 +51,9 @@ fn lacks(offer: &Offer, shaders: &[&str]) -> Vec<String> {
 /// Programs that make what methods take of a frame.
 fn of_inputs(inputs: Inputs) -> &'static [&'static str] {
     match (inputs.light_depth, inputs.light_flux) {
-        (_, true) => &["light_views/*"],
-        (true, false) => &["light_views/depth*"],
-        (false, false) => &[],
+        (Views::None, Views::None) => &[],
+        (_, Views::None) => &["light_views/depth*"],
+        _ => &["light_views/*"],
     }
 }
 

@@ -6,6 +6,7 @@ use super::choices::{DirectMethod, Methods};
 use super::settings::Settings;
 use crate::estimator::{Estimating, Estimator, Samples};
 use crate::frame::caches::CacheSight;
+use crate::frame::light_views::Views;
 use crate::frame::voxels;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays, for_all_methods};
@@ -65,7 +66,7 @@ fn with_caches(inputs: Inputs, settings: &Settings) -> Inputs {
         return inputs;
     }
     let rays = if settings.volumes.cache_settings().traces() { Rays::ToSurfaces } else { Rays::None };
-    inputs.and(Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() })
+    inputs.and(Inputs { light_depth: Views::All, light_flux: Views::All, rays, ..Inputs::default() })
 }
 
 impl MethodEntry {

@@ -21,9 +21,11 @@
 //! | `sampling` | textures read as shaders read them |
 //! | `appearance` | what points of a surface reflect diffusely and send out |
 //! | `emitters` | emissive surfaces as a bounded number of point emitters |
+//! | `emitted` | how much light all lights send out |
+//! | `seen` | how much surface pixels show |
 //! | `auto_view`, `indoor_view` | a view of a scene that has no camera, from outside or from within |
 //! | `bvh` | the hierarchy that shaders trace rays through |
-//! | `rays` | rays against all triangles, for those views |
+//! | `rays` | rays against all triangles, for those views and `seen` |
 //! | `gltf/` | reading files |
 //! | `load_options` | what reading may do |
 //! | `builtin` | the scenes that come with irradia |
@@ -44,6 +46,7 @@ mod digest;
 mod editing;
 mod emission;
 mod emission_points;
+mod emitted;
 mod emitters;
 mod error;
 mod extent;
@@ -60,6 +63,7 @@ mod mesh_editing;
 pub(crate) mod rays;
 mod refit;
 mod sampling;
+mod seen;
 mod shining;
 mod split;
 mod tangents;

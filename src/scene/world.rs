@@ -78,6 +78,8 @@ pub struct Scene {
     pub name: String,
     /// A line on what the scene shows or tests (`asset.extras.description` of a glTF file).
     pub description: Option<String>,
+    /// Cameras that stand in rooms which no light gets into (`asset.extras.dark` of a glTF file): whatever a technique shows there came through walls.
+    pub dark_cameras: Vec<String>,
     /// What loading had to leave out or change, a sentence each.
     pub warnings: Vec<String>,
     pub(super) meshes: Vec<Mesh>,
@@ -213,6 +215,7 @@ impl Scene {
         let Scene {
             name: _,
             description: _,
+            dark_cameras: _,
             warnings: _,
             meshes,
             mesh_changes: _,

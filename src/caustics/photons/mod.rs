@@ -21,6 +21,7 @@ mod upsample;
 use self::options::{PhotonFootprint, PhotonGeometry, PhotonOptions, PhotonSplatting, PhotonTracing};
 use self::splat::{SplatInputs, splat};
 use crate::frame::inputs::FrameInputs;
+use crate::frame::light_views::Views;
 use crate::frame::photons::records::{ARRIVAL_BYTES, Arrivals, LARGEST_BUFFER, LandedPhotons, PhotonRays};
 use crate::frame::photons::turn::{Discs, Sending, Turn};
 use crate::frame::photons::ways::Ways;
@@ -53,7 +54,7 @@ impl Method for Photons {
 
     fn inputs(options: &PhotonOptions) -> Inputs {
         let rays = if options.trace == PhotonTracing::Bvh { Rays::ToSurfaces } else { Rays::None };
-        Inputs { light_depth: true, rays, ..Inputs::default() }
+        Inputs { light_depth: Views::All, rays, ..Inputs::default() }
     }
 
     fn shaders(options: &PhotonOptions, _: bool) -> Vec<&'static str> {

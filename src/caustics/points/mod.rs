@@ -9,6 +9,7 @@ pub(crate) mod kept;
 pub(crate) mod options;
 
 use self::options::PointOptions;
+use crate::frame::light_views::Views;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -27,7 +28,7 @@ impl Method for Points {
     }
 
     fn inputs(_: &PointOptions) -> Inputs {
-        Inputs { light_depth: true, rays: Rays::ToSurfaces, ..Inputs::default() }
+        Inputs { light_depth: Views::All, rays: Rays::ToSurfaces, ..Inputs::default() }
     }
 
     fn shaders(_: &PointOptions, _: bool) -> Vec<&'static str> {

@@ -14,6 +14,7 @@ pub(crate) mod options;
 use ash::vk;
 
 use self::options::RsmOptions;
+use crate::frame::light_views::Views;
 use crate::graph::Dependence;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method};
@@ -37,7 +38,7 @@ impl Method for Rsm {
     }
 
     fn inputs(_: &RsmOptions) -> Inputs {
-        Inputs { light_depth: true, light_flux: true, ..Inputs::default() }
+        Inputs { light_depth: Views::All, light_flux: Views::All, ..Inputs::default() }
     }
 
     fn shaders(_: &RsmOptions, _: bool) -> Vec<&'static str> {

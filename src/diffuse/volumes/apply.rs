@@ -36,6 +36,7 @@ pub(super) fn apply(
         missing: missing.read_write(),
         scene_rays,
         bands: options.bands,
+        chroma: options.chroma_bands(),
         weights: kind_of(options.weights),
         push: ApplyPush { rays, capacity: caches.capacity },
     };

@@ -1,56 +1,50 @@
 //! The light of all virtual area lights at all caches.
 
 use super::options::{VolumesOptions, VolumesVal, VolumesVisibility};
-use crate::frame::caches::{AreaLights, Caches};
-use crate::graph::bindings::BufferRef;
+use super::renewal::{Renewal, renewal};
+use crate::frame::caches::{AreaLights, CacheSight, Caches, Chunk, nodes};
+use crate::frame::voxels::Voxels;
+use crate::graph::bindings::{BufferRef, ReadBuffer, TexelBuffer};
+use crate::graph::{Graph, hash_of};
 use crate::method::FrameCx;
+use crate::shaders::groups::{LightCaches, SceneRays};
+use crate::shaders::types::CacheRays;
 use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 
-/// Invocations of a cache, which share the groups of lights.
-const LANES: u32 = 64;
-/// Steps of an invocation's loops for each light, and for a ray to a group of them.
+/// Steps of an invocation's loops for each light; for 64 neighbouring groups that are taken together, among whose lights one is drawn.
 const LIGHT_STEPS: u32 = 2;
-const RAY_STEPS: u32 = 341;
+const DRAW_STEPS: u32 = 64;
 
-/// Steps of a cone over voxels along one axis at most.
-const CONE_STEPS: u32 = 3;
-
-/// Numbers that a cache holds (glsl/volumes/light.comp).
-fn numbers(bands: u32) -> usize {
-    if bands == 3 { 28 } else { 12 }
+/// Numbers that a cache holds (glsl/volumes/numbers.glsl).
+pub(super) fn numbers(options: &VolumesOptions) -> usize {
+    match (options.bands, options.chroma_bands()) {
+        (3, 3) => 28,
+        (3, 2) => 20,
+        (3, _) | (_, 2) => 12,
+        _ => 8,
+    }
 }
 
-/// Groups that one pass may take.
-fn groups_at_once(lights: &AreaLights, options: &VolumesOptions, loop_steps: u32) -> u32 {
-    let seen = match options.visibility {
-        VolumesVisibility::None => 0,
-        VolumesVisibility::Rays => RAY_STEPS,
-        VolumesVisibility::Cones => CONE_STEPS * options.voxels,
-    };
-    let steps = LIGHT_STEPS * lights.group_lights + seen;
-    LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
-}
-
-/// Some groups of lights, which one pass takes.
-struct Step<'l> {
-    number: u32,
-    name: String,
+/// Lights that passes of one name take.
+struct List<'l> {
+    name: &'static str,
     lights: &'l AreaLights,
-    first_group: i32,
-    end_group: i32,
+    /// Present if groups are taken together.
+    nodes: Option<BufferRef<[f32; 4]>>,
 }
 
-fn steps_of<'l>(lights: &[(&str, &'l AreaLights)], loop_steps: u32, options: &VolumesOptions) -> Vec<Step<'l>> {
-    let chunks = |&(name, lights): &(&str, &'l AreaLights)| {
-        let most = groups_at_once(lights, options, loop_steps);
-        let name = name.to_owned();
-        (0..lights.group_count.max(1)).step_by(most as usize).map(move |first| {
-            let name = if first == 0 { name.clone() } else { format!("{name}-{}", first / most + 1) };
-            let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
-            Step { name, lights, first_group: first.cast_signed(), end_group, number: 0 }
-        })
-    };
-    (0..).zip(lights.iter().flat_map(chunks)).map(|(number, step)| Step { number, ..step }).collect()
+/// What all passes read.
+struct Inputs<'a> {
+    caches: &'a Caches,
+    options: &'a VolumesOptions,
+    scene: SceneRays,
+    rays: CacheRays,
+    voxels: Option<&'a Voxels>,
+    light: BufferRef<f32>,
+    /// Of rays or cones.
+    sent: BufferRef<u32>,
+    /// Present if some caches alone are lit.
+    due: Option<BufferRef<u32>>,
 }
 
 /// Declares the passes; returns the numbers of all caches. `views`: lights of light views, `samples`: of samples of the surfaces.
@@ -62,43 +56,107 @@ pub(super) fn light(
 ) -> BufferRef<f32> {
     let (scene, rays) = cx.cache_rays();
     let voxels = (options.visibility == VolumesVisibility::Cones).then(|| cx.voxels(&options.voxel_settings()));
-    let graph = &mut *cx.graph;
-    let light = graph.buffer::<f32>("volumes.light", numbers(options.bands) * caches.capacity as usize);
     let lists = [("diffuse/volumes/light", views), ("diffuse/volumes/light-samples", samples)];
-    let lists: Vec<_> = lists.into_iter().filter_map(|(name, lights)| Some((name, lights?))).collect();
-    if lists.is_empty() {
+    let lists = lists.into_iter().filter_map(|(name, lights)| Some((name, lights?)));
+    let listed: Vec<List<'_>> = lists
+        .map(|(name, lights)| {
+            let together = options.aperture > 0.0;
+            let nodes = together.then(|| nodes(cx.graph, &format!("{name}-nodes"), lights));
+            List { name, lights, nodes }
+        })
+        .collect();
+    let renewal = if options.update > 1 && options.cascades > 1 && !listed.is_empty() {
+        let now = now(cx, caches, voxels.as_deref(), &listed);
+        Some(renewal(cx, caches, now, options))
+    } else {
+        None
+    };
+    let (light, due) = match renewal {
+        Some(Renewal { light, due }) => (light, Some(due)),
+        None => (cx.graph.buffer("volumes.light", numbers(options) * caches.capacity as usize), None),
+    };
+    let graph = &mut *cx.graph;
+    if listed.is_empty() {
         graph.fill_buffer("diffuse/volumes/clear-light", light, 0);
+        return light;
     }
-    for step in steps_of(&lists, graph.traits().loop_steps, options) {
-        let (first_group, end_group) = (step.first_group, step.end_group);
-        let adds = step.number > 0;
-        let into = if adds { light.read_write() } else { light.start_then_read() };
-        let (area_lights, light_caches) = (step.lights.group.clone(), caches.group.clone());
-        let (adds, capacity) = (u32::from(adds), caches.capacity);
-        if let Some(voxels) = &voxels {
-            let pass = LightCones {
-                voxels: voxels.group.clone(),
-                area_lights,
-                light_caches,
-                light: into,
-                bands: options.bands,
-                paper: u32::from(options.val == VolumesVal::Paper),
-                push: LightConesPush { rays, first_group, end_group, capacity, adds },
-            };
-            graph.pass(&step.name, pass).threads_indirect(caches.head, 0);
-        } else {
-            let pass = Light {
-                scene_rays: scene.clone(),
-                area_lights,
-                light_caches,
-                light: into,
-                bands: options.bands,
-                paper: u32::from(options.val == VolumesVal::Paper),
-                traces: u32::from(options.visibility == VolumesVisibility::Rays),
-                push: LightPush { rays, first_group, end_group, capacity, adds },
-            };
-            graph.pass(&step.name, pass).threads_indirect(caches.head, 0);
+    let sent = graph.buffer::<u32>("volumes.sent", 1);
+    graph.fill_buffer("diffuse/volumes/clear-sent", sent, 0);
+    let inputs = Inputs { caches, options, scene, rays, voxels: voxels.as_deref(), light, sent, due };
+    let sight = options.cache_settings().sight;
+    let mut adds = false;
+    for list in &listed {
+        let steps = LIGHT_STEPS * list.lights.group_lights + if list.nodes.is_some() { DRAW_STEPS } else { 0 };
+        for chunk in list.lights.chunks(sight, steps, graph.traits().loop_steps) {
+            pass(graph, &inputs, list, chunk, adds);
+            adds = true;
         }
     }
     light
+}
+
+/// Names all that the light of caches depends on.
+fn now(cx: &FrameCx<'_, '_>, caches: &Caches, voxels: Option<&Voxels>, lists: &[List<'_>]) -> u64 {
+    let of_lights = |list: &List<'_>| cx.graph.key_of(list.lights.lights);
+    let lights: Vec<u64> = lists.iter().map(of_lights).collect();
+    let voxels = voxels.map(|voxels| cx.graph.key_of_image(voxels.opacity));
+    let scene = cx.rays().map(|scene| scene.key);
+    hash_of(&(lights, voxels, scene, cx.graph.key_of(caches.positions)))
+}
+
+fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chunk, adds: bool) {
+    let &Inputs { caches, options, rays, light, sent, due, .. } = inputs;
+    let paper = options.val == VolumesVal::Paper;
+    // The paper's lights come from all around: nobody looks for horizons then.
+    let cache_horizons = if paper { TexelBuffer::absent() } else { caches.group.cache_horizons.clone() };
+    let light_caches = LightCaches { cache_horizons, ..caches.group.clone() };
+    let (area_lights, name) = (list.lights.group.clone(), chunk.name(list.name));
+    let (first_group, end_group, capacity) = (chunk.first_group, chunk.end_group, caches.capacity);
+    let group_count = list.lights.group_count.cast_signed();
+    let aperture = (options.aperture.to_radians() * 0.5).sin() as f32;
+    let into = if adds || due.is_some() { light.read_write() } else { light.start_then_read() };
+    let listed = due.map_or(ReadBuffer::absent(), BufferRef::read);
+    let nodes = |nodes: BufferRef<[f32; 4]>| nodes.texels(ash::vk::Format::R32G32B32A32_SFLOAT);
+    let light_nodes = list.nodes.map_or(TexelBuffer::absent(), nodes);
+    let (is_listed, together) = (u32::from(due.is_some()), u32::from(list.nodes.is_some()));
+    let (arguments, adds) = (due.unwrap_or(caches.head), u32::from(adds));
+    if let Some(voxels) = inputs.voxels {
+        let pass = LightCones {
+            voxels: voxels.group.clone(),
+            area_lights,
+            light_caches,
+            light: into,
+            sent: sent.read_write(),
+            due: listed,
+            light_nodes,
+            bands: options.bands,
+            chroma: options.chroma_bands(),
+            paper: u32::from(paper),
+            listed: is_listed,
+            together,
+            push: LightConesPush { rays, first_group, end_group, capacity, adds, group_count, aperture },
+        };
+        graph.pass(&name, pass).count("cones", sent, 0).threads_indirect(arguments, 0);
+        return;
+    }
+    let traces = options.cache_settings().sight == CacheSight::Rays;
+    let pass = Light {
+        scene_rays: inputs.scene.clone(),
+        area_lights,
+        light_caches,
+        light: into,
+        sent: sent.read_write(),
+        due: listed,
+        light_nodes,
+        bands: options.bands,
+        chroma: options.chroma_bands(),
+        paper: u32::from(paper),
+        listed: is_listed,
+        together,
+        traces: u32::from(traces),
+        push: LightPush { rays, first_group, end_group, capacity, adds, group_count, aperture },
+    };
+    let pass = graph.pass(&name, pass);
+    let pass = if traces { pass.count("rays", sent, 0) } else { pass };
+    pass.threads_indirect(arguments, 0);
 }

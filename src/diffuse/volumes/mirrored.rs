@@ -32,6 +32,7 @@ pub(super) fn light(
             light: light.texels(vk::Format::R32G32B32A32_SFLOAT),
             received: received.start(),
             bands: options.bands,
+            chroma: options.chroma_bands(),
             weights: kind_of(options.weights),
             push: MirroredPush { rays, capacity: caches.capacity },
         };

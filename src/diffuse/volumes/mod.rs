@@ -3,13 +3,14 @@
 //! 1. The light views are reduced to virtual area lights, and caches made at the nodes of grids around the eye where a visible surface lies (`frame/caches/`, shared with
 //!    whoever lights the same caches for another slot).
 //! 2. Samples of all surfaces become such lights too, by the light of emissive surfaces and the sky and by what was reflected before (`frame/bounces/`).
-//! 3. `light.rs`: the light that comes to each cache, as spherical harmonics.
+//! 3. `light.rs`: the light that comes to each cache, as spherical harmonics; `renewal.rs`: of caches far away not in each frame.
 //! 4. `apply.rs`: every pixel interpolates between its eight caches.
 
 mod apply;
 mod light;
 mod mirrored;
 pub(crate) mod options;
+mod renewal;
 #[cfg(test)]
 mod tests;
 
@@ -18,6 +19,7 @@ use std::rc::Rc;
 use self::options::{VolumesAreaLights, VolumesOptions, VolumesSpread, VolumesVal, VolumesVisibility, VolumesWeights};
 use crate::frame::bounces::{self, BounceRule};
 use crate::frame::caches::{AreaLights, LightRule, Picture, area_lights, spread_lights};
+use crate::frame::light_views::Views;
 use crate::frame::mirrored::MirroredPoints;
 use crate::frame::voxels;
 use crate::graph::bindings::ImageRef;
@@ -48,7 +50,8 @@ impl Method for Volumes {
         } else {
             Rays::None
         };
-        Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() }
+        let views = if light_rule(options).punctual { Views::Punctual } else { Views::All };
+        Inputs { light_depth: views, light_flux: views, rays, ..Inputs::default() }
     }
 
     fn shaders(options: &VolumesOptions, _: bool) -> Vec<&'static str> {

@@ -1,6 +1,6 @@
 //! Options of `volumes`.
 
-use crate::frame::caches::{CacheSettings, CacheSight, CascadeRule, LightRule};
+use crate::frame::caches::{CacheSettings, CacheSight, CascadeRule, LightRule, PlaceRule};
 use crate::frame::voxels::{VoxelSettings, Voxelisation};
 use crate::method::{OptionKind, choices, options};
 
@@ -114,10 +114,14 @@ options! {
     cell: f64 = 0.0; OptionKind::Number(0.0, 1e9), "m", "falls";
     /// Bands of spherical harmonics.
     bands: u32 = 3, paper = 2; OptionKind::OneOf(&[2, 3]), "bands", "linear";
+    /// Bands in which caches keep colour; of those above they keep the luminance alone, in the colour of the first.
+    chroma: u32 = 3; OptionKind::Integer(1, 3), "bands", "linear";
     /// Whether light may be blocked on its way to a cache.
     visibility: VolumesVisibility = VolumesVisibility::Rays, paper = VolumesVisibility::Cones; OptionKind::Choice(VolumesVisibility::NAMES), "", "";
     /// 4 to this power of lights share one visibility.
     lod: u32 = 1, draft = 2, paper = 2; OptionKind::Integer(0, 4), "", "falls";
+    /// Neighbouring groups, up to 64 together, share one visibility where a cache sees them no wider than this across; 0: each has its own.
+    aperture: f64 = 0.0; OptionKind::Number(0.0, 180.0), "°", "falls";
     /// With `visibility=cones` voxels along the longest axis of the scene.
     voxels: u32 = 128; OptionKind::Integer(16, 512), "voxels", "cubic";
     /// With `visibility=cones` how triangles become voxels.
@@ -134,6 +138,10 @@ options! {
     cone_width: f64 = 0.5, paper = 1.0; OptionKind::Number(0.125, 1.0), "", "falls";
     /// Where caches lie.
     placement: VolumesPlacement = VolumesPlacement::Visible; OptionKind::Choice(VolumesPlacement::NAMES), "", "";
+    /// How far off their nodes caches lie at most, along each axis.
+    jitter: f64 = 0.0; OptionKind::Number(0.0, 0.5), "cells", "";
+    /// Caches of the second volume are lit anew every second frame only, those of the third every fourth, and so on, up to this many frames; 1: all in every frame. A picture alone has all of its light.
+    update: u32 = 1; OptionKind::Integer(1, 64), "frames", "falls";
     /// What caches count by, beside their distances, for a pixel between them.
     weights: VolumesWeights = VolumesWeights::Trilinear, high = VolumesWeights::Rays; OptionKind::Choice(VolumesWeights::NAMES), "", "";
     /// How the light of emissive surfaces and of the sky gets to the surfaces that reflect it first.
@@ -156,8 +164,11 @@ impl VolumesOptions {
                 lod: self.lod,
                 paper: self.val == VolumesVal::Paper,
             },
-            cascades: CascadeRule { count: self.cascades, resolution: self.resolution, cell: self.cell },
-            moves: self.placement == VolumesPlacement::Visible,
+            places: PlaceRule {
+                cascades: CascadeRule { count: self.cascades, resolution: self.resolution, cell: self.cell },
+                moves: self.placement == VolumesPlacement::Visible,
+                jitter: self.jitter as f32,
+            },
             sight: match self.visibility {
                 VolumesVisibility::None => CacheSight::Open,
                 VolumesVisibility::Rays => CacheSight::Rays,
@@ -165,6 +176,11 @@ impl VolumesOptions {
             },
             weighs_by_rays: self.weights == VolumesWeights::Rays,
         }
+    }
+
+    /// Bands of which each channel has its own; those above are the luminance's.
+    pub(super) fn chroma_bands(&self) -> u32 {
+        self.chroma.min(self.bands)
     }
 
     /// The voxels that cones pass through.

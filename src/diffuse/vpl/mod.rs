@@ -12,6 +12,7 @@ use ash::vk;
 
 use self::options::{VplOptions, VplShading, VplVisibility};
 use self::visibility::Visibility;
+use crate::frame::light_views::Views;
 use crate::frame::mirrored::MirroredPoints;
 use crate::frame::regions::{self, RegionRule};
 use crate::graph::bindings::{BufferRef, ImageRef};
@@ -35,7 +36,7 @@ impl Method for Vpl {
     fn inputs(options: &VplOptions) -> Inputs {
         let traces = options.visibility == VplVisibility::Traced || options.bounces > 1;
         let rays = if traces { Rays::ToSurfaces } else { Rays::None };
-        Inputs { light_depth: true, light_flux: true, rays, ..Inputs::default() }
+        Inputs { light_depth: Views::All, light_flux: Views::All, rays, ..Inputs::default() }
     }
 
     fn shaders(options: &VplOptions, software: bool) -> Vec<&'static str> {

@@ -6,6 +6,7 @@ use ash::vk;
 
 use self::options::ShadowOptions;
 use crate::frame::direct_light::SharpLight;
+use crate::frame::light_views::Views;
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method};
 use crate::scene::Facts;
@@ -25,7 +26,7 @@ impl Method for ShadowMap {
     }
 
     fn inputs(_: &ShadowOptions) -> Inputs {
-        Inputs { light_depth: true, ..Inputs::default() }
+        Inputs { light_depth: Views::All, ..Inputs::default() }
     }
 
     fn shaders(_: &ShadowOptions, _: bool) -> Vec<&'static str> {

@@ -9,7 +9,7 @@ mod space;
 use ash::vk;
 
 use self::space::{FLOATS, Light, Space, WORDS};
-use super::caches::{AreaLights, grouped};
+use super::caches::{AreaLights, CacheSight, grouped};
 use super::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -19,9 +19,7 @@ use crate::shaders::bounces::{
 
 const WORD: vk::Format = vk::Format::R32_UINT;
 
-/// Invocations of a sample, which share the groups of lights; steps of their loops for a ray, and for a light.
-const LANES: u32 = 64;
-const RAY_STEPS: u32 = 341;
+/// Steps of an invocation's loops for a light.
 const LIGHT_STEPS: u32 = 1;
 
 /// What samples are to shine by.
@@ -81,7 +79,7 @@ pub(crate) fn sample_lights(
         push: LightsPush { shift, slot_count },
     };
     graph.pass("bounces/lights/make", pass).threads([slot_count, 1, 1]);
-    Some(grouped(graph, "bounces", slots, cluster))
+    Some(grouped(graph, "bounces/lights", slots, cluster))
 }
 
 /// All light that comes to the samples; none where there is none.
@@ -116,27 +114,18 @@ fn light(
 /// What comes to the samples from the light views' lights, W/m².
 fn receive(graph: &mut Graph<'_>, (shift, paper): ([f32; 3], bool), first: &AreaLights, space: &Space) -> Light {
     let arrived = graph.buffer::<[f32; 4]>("bounces.from_views", space.slot_count as usize);
-    let steps = RAY_STEPS + LIGHT_STEPS * first.group_lights;
-    let most = LANES.saturating_mul((graph.traits().loop_steps / steps).max(1)).min(i32::MAX.cast_unsigned());
-    for first_group in (0..first.group_count.max(1)).step_by(most as usize) {
+    let loop_steps = graph.traits().loop_steps;
+    for chunk in first.chunks(CacheSight::Rays, LIGHT_STEPS * first.group_lights, loop_steps) {
+        let (first_group, end_group) = (chunk.first_group, chunk.end_group);
         let pass = Receive {
             area_lights: first.group.clone(),
             scene_rays: space.rays.clone(),
             samples: space.samples.texels(WORDS),
             paper: u32::from(paper),
             arrived: if first_group == 0 { arrived.start_then_read() } else { arrived.read_write() },
-            push: ReceivePush {
-                shift,
-                slot_count: space.slot_count,
-                first_group: first_group.cast_signed(),
-                end_group: first_group.saturating_add(most).min(first.group_count).cast_signed(),
-            },
+            push: ReceivePush { shift, slot_count: space.slot_count, first_group, end_group },
         };
-        let name = match first_group / most {
-            0 => "bounces/light/receive".to_owned(),
-            chunk => format!("bounces/light/receive-{}", chunk + 1),
-        };
-        graph.pass(&name, pass).groups(space.groups());
+        graph.pass(&chunk.name("bounces/light/receive"), pass).groups(space.groups());
     }
     arrived
 }

@@ -4,6 +4,7 @@ use ash::vk;
 use glam::{DVec3, Vec3};
 
 use super::cascades::CascadeRule;
+use super::settings::PlaceRule;
 use crate::frame::inputs::FrameInputs;
 use crate::frame::mirrored::MirroredPoints;
 use crate::graph::bindings::BufferRef;
@@ -32,10 +33,12 @@ const ROUNDS: u32 = 2;
 /// The caches of a frame.
 pub(crate) struct Caches {
     pub(crate) group: LightCaches,
+    pub(crate) cascades: types::Cascades,
+    /// Of each the address of its node (glsl/caches/cascades.glsl).
+    pub(crate) nodes: BufferRef<u32>,
     /// Words 0 to 2: work groups of one cache each; word 3: how many there are.
     pub(crate) head: BufferRef<u32>,
     /// Where they lie, in render space.
-    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) positions: BufferRef<[f32; 4]>,
     /// How many there is room for.
     pub(crate) capacity: u32,
@@ -60,8 +63,9 @@ impl<T> List<T> {
     }
 }
 
-/// Declares the passes; what mirrors show has caches too, if somebody listed it. `moves`: caches behind surfaces move before them.
-pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &CascadeRule, moves: bool) -> Caches {
+/// Declares the passes; what mirrors show has caches too, if somebody listed it.
+pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, places: &PlaceRule) -> Caches {
+    let rule = &places.cascades;
     let (surface, data) = (frame.surface, frame.data);
     let eye: DVec3 = Vec3::from(frame.camera.position_rs).as_dvec3();
     let cascades = rule.around(eye, data.middle_rs, data.radius, data.reach);
@@ -106,7 +110,7 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
     let pass = graph.pass("caches/places/allocate", pass).unordered();
     pass.count("caches", nodes.head, 3).threads_indirect(asks.head, 0);
     graph.grows(nodes.items, nodes.head, 3);
-    let positions = positions(graph, &cascades, (&asks, &nodes), addresses, moves);
+    let positions = positions(graph, &cascades, (&asks, &nodes), addresses, places);
     let group = LightCaches {
         cascades: graph.upload("caches.cascades", &[cascades], Dependence::CAMERA).uniform(),
         cache_head: nodes.head.texels(WORD),
@@ -114,7 +118,7 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
         cache_addresses: addresses.texels(WORD),
         cache_horizons: horizons(graph, rule, (&asks, &nodes), addresses, positions).texels(WORDS),
     };
-    Caches { group, head: nodes.head, positions, capacity: nodes.capacity() }
+    Caches { group, cascades, nodes: nodes.items, head: nodes.head, positions, capacity: nodes.capacity() }
 }
 
 /// What the surfaces that ask for each cache have in front of them.
@@ -146,13 +150,13 @@ fn positions(
     cascades: &types::Cascades,
     (asks, nodes): (&List<types::Ask>, &List<u32>),
     addresses: BufferRef<u32>,
-    moves: bool,
+    rule: &PlaceRule,
 ) -> BufferRef<[f32; 4]> {
     let capacity = nodes.capacity();
     let ways = graph.buffer::<u32>("caches.moves", WAYS * capacity as usize);
     graph.fill_buffer("caches/places/clear-moves", ways, 0);
     let positions = graph.buffer::<[f32; 4]>("caches.positions", capacity as usize);
-    for round in 0..=if moves { ROUNDS } else { 0 } {
+    for round in 0..=if rule.moves { ROUNDS } else { 0 } {
         if round > 0 {
             let pass = Move {
                 asks: asks.items.read(),
@@ -169,7 +173,7 @@ fn positions(
             nodes: nodes.items.texels(WORD),
             moves: ways.read_write(),
             positions: if round == 0 { positions.start_then_read() } else { positions.read_write() },
-            push: SettlePush { cascades: *cascades, capacity, moves_on: u32::from(round > 0) },
+            push: SettlePush { cascades: *cascades, capacity, moves_on: u32::from(round > 0), jitter: rule.jitter },
         };
         graph.pass(&format!("caches/places/settle.{round}"), pass).threads([capacity, 1, 1]);
     }

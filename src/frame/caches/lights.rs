@@ -52,26 +52,26 @@ pub(crate) struct AreaLights {
 /// Declares the passes.
 pub(crate) fn area_lights(graph: &mut Graph<'_>, set: &LightSet, views: &LightViews, rule: &LightRule) -> AreaLights {
     // Of a frame that has both lists each goes by a name of its own.
-    let (name, piece) = if rule.punctual { ("punctual-lights", "caches/punctual") } else { ("lights", "caches") };
-    let slots = reduced(graph, set, views, rule, name);
-    grouped(graph, piece, slots, 1 << (2 * rule.lod))
+    let level = if rule.punctual { "caches/punctual-lights" } else { "caches/lights" };
+    let slots = reduced(graph, set, views, rule, level);
+    grouped(graph, level, slots, 1 << (2 * rule.lod))
 }
 
-/// Declares the pass that makes a slot of each block of the views' texels, two texels each (glsl/caches/slots.glsl), in squares of 4^lod of them at least; `name`: of what they are for.
+/// Declares the pass that makes a slot of each block of the views' texels, two texels each (glsl/caches/slots.glsl), in squares of 4^lod of them at least; `level`: of the passes that they are for.
 pub(super) fn reduced(
     graph: &mut Graph<'_>,
     set: &LightSet,
     views: &LightViews,
     rule: &LightRule,
-    name: &str,
+    level: &str,
 ) -> BufferRef<[f32; 4]> {
     let wanted = set.views_of(rule.punctual);
     let side = block_side(wanted, rule.side);
     let (slot_views, slot_count) = slots_of(wanted, side, rule.lod);
-    let slot_views = graph.upload(&format!("{name}.slot_views"), &slot_views, Dependence::LIGHTS);
-    let slots = graph.buffer::<[f32; 4]>(&format!("{name}.slots"), 2 * slot_count as usize);
-    let dropped = graph.buffer::<u32>(&format!("{name}.dropped"), 1);
-    graph.fill_buffer(&format!("caches/{name}/clear-dropped"), dropped, 0);
+    let slot_views = graph.upload(&format!("{level}.slot_views"), &slot_views, Dependence::LIGHTS);
+    let slots = graph.buffer::<[f32; 4]>(&format!("{level}.slots"), 2 * slot_count as usize);
+    let dropped = graph.buffer::<u32>(&format!("{level}.dropped"), 1);
+    graph.fill_buffer(&format!("{level}/clear-dropped"), dropped, 0);
     let pass = Reduce {
         light_views: views.group.clone(),
         slot_views: slot_views.read(),
@@ -80,29 +80,29 @@ pub(super) fn reduced(
         paper: u32::from(rule.paper),
         push: ReducePush { slot_count, view_count: slot_views.count() as u32, side: side.cast_signed() },
     };
-    let pass = graph.pass(&format!("caches/{name}/reduce"), pass).note("texels a light", u64::from(side * side));
+    let pass = graph.pass(&format!("{level}/reduce"), pass).note("texels a light", u64::from(side * side));
     pass.count("dropped", dropped, 0).threads([slot_count, 1, 1]);
 
     slots
 }
 
-/// Declares the passes that drop slots without flux and make groups of what is left of each `group_lights` slots; `piece`: who pays for them.
-pub(crate) fn grouped(graph: &mut Graph<'_>, piece: &str, slots: BufferRef<[f32; 4]>, group_lights: u32) -> AreaLights {
+/// Declares the passes that drop slots without flux and make groups of what is left of each `group_lights` slots; `level`: of these passes.
+pub(crate) fn grouped(graph: &mut Graph<'_>, level: &str, slots: BufferRef<[f32; 4]>, group_lights: u32) -> AreaLights {
     let slot_count = slots.count() / 2;
     let group_count = slot_count as u32 / group_lights;
-    let offsets = graph.buffer::<[u32; 2]>(&format!("{piece}.offsets"), group_count as usize + 1);
-    let counts = graph.buffer::<u32>(&format!("{piece}.light_counts"), 2);
+    let offsets = graph.buffer::<[u32; 2]>(&format!("{level}.offsets"), group_count as usize + 1);
+    let counts = graph.buffer::<u32>(&format!("{level}.light_counts"), 2);
     let pass = Scan {
         slots: slots.texels(FLOATS),
         offsets: offsets.write(),
         counts: counts.write(),
         push: ScanPush { group_count, group_slots: group_lights },
     };
-    let pass = graph.pass(&format!("{piece}/lights/scan"), pass);
+    let pass = graph.pass(&format!("{level}/scan"), pass);
     pass.count("lights", counts, 0).count("groups", counts, 1).groups([1, 1, 1]);
 
-    let lights = graph.buffer::<[f32; 4]>(&format!("{piece}.lights"), 2 * slot_count);
-    let lists = graph.buffer::<[u32; 4]>(&format!("{piece}.light_groups"), 2 * group_count as usize);
+    let lights = graph.buffer::<[f32; 4]>(&format!("{level}.lights"), 2 * slot_count);
+    let lists = graph.buffer::<[u32; 4]>(&format!("{level}.light_groups"), 2 * group_count as usize);
     let pass = GatherGroups {
         slots: slots.texels(FLOATS),
         offsets: offsets.texels(vk::Format::R32G32_UINT),
@@ -110,7 +110,7 @@ pub(crate) fn grouped(graph: &mut Graph<'_>, piece: &str, slots: BufferRef<[f32;
         groups: lists.start(),
         push: GatherGroupsPush { group_count, group_slots: group_lights },
     };
-    graph.pass(&format!("{piece}/lights/groups"), pass).threads([group_count, 1, 1]);
+    graph.pass(&format!("{level}/groups"), pass).threads([group_count, 1, 1]);
     let group = groups::AreaLights {
         area_lights: lights.texels(FLOATS),
         area_light_groups: lists.texels(WORDS),

@@ -3,12 +3,16 @@
 
 mod allocate;
 mod cascades;
+mod chunks;
 mod lights;
+mod nodes;
 mod settings;
 mod spread;
 
 pub(crate) use self::allocate::{Caches, allocate};
 pub(crate) use self::cascades::CascadeRule;
+pub(crate) use self::chunks::Chunk;
 pub(crate) use self::lights::{AreaLights, LightRule, area_lights, grouped};
-pub(crate) use self::settings::{CacheSettings, CacheSight};
+pub(crate) use self::nodes::nodes;
+pub(crate) use self::settings::{CacheSettings, CacheSight, PlaceRule};
 pub(crate) use self::spread::{Picture, spread_lights};

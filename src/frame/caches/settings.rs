@@ -15,13 +15,21 @@ pub(crate) enum CacheSight {
     Cones(VoxelSettings),
 }
 
+/// Where caches lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlaceRule {
+    pub(crate) cascades: CascadeRule,
+    /// Caches behind surfaces move before them.
+    pub(crate) moves: bool,
+    /// How far off their nodes they lie at most, along each axis, in cells.
+    pub(crate) jitter: f32,
+}
+
 /// What methods that light the same caches go by; equal ones are made once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CacheSettings {
     pub(crate) lights: LightRule,
-    pub(crate) cascades: CascadeRule,
-    /// Caches behind surfaces move before them.
-    pub(crate) moves: bool,
+    pub(crate) places: PlaceRule,
     pub(crate) sight: CacheSight,
     /// Pixels send rays to their caches.
     pub(crate) weighs_by_rays: bool,

@@ -41,17 +41,17 @@ pub(crate) fn spread_lights(
     rule: &LightRule,
 ) -> AreaLights {
     let finer = LightRule { side: FINER * rule.side, lod: LEVELS, ..*rule };
-    let slots = reduced(graph, set, views, &finer, "spread");
+    let slots = reduced(graph, set, views, &finer, "caches/spread");
     let slot_count = slots.count() as u32 / 2;
     let matter = weigh(graph, picture, slots, slot_count);
-    let total = graph.buffer::<[f32; 2]>("spread.matter.total", 1);
+    let total = graph.buffer::<[f32; 2]>("caches/spread.matter.total", 1);
     let pass =
         Total { matter: matter.texels(PAIRS), total: total.write(), push: TotalPush { slot_count, level: LEVELS } };
     graph.pass("caches/spread/total", pass).groups([1, 1, 1]);
     // Lights that the bound leaves matter between a quarter of it and all: about side² of them.
     let group_lights = 1 << (2 * rule.lod);
     let light_bound = 2.0 / (rule.side as f32).powi(2);
-    let cuts = graph.buffer::<u32>("spread.cuts", slot_count as usize);
+    let cuts = graph.buffer::<u32>("caches/spread.cuts", slot_count as usize);
     let pass = Cut {
         matter: matter.texels(PAIRS),
         total: total.texels(PAIRS),
@@ -76,7 +76,7 @@ fn weigh(
     slot_count: u32,
 ) -> BufferRef<[f32; 2]> {
     let node_count: u32 = (0..=LEVELS).map(|level| slot_count >> (2 * level)).sum();
-    let matter = graph.buffer::<[f32; 2]>("spread.matter", node_count as usize);
+    let matter = graph.buffer::<[f32; 2]>("caches/spread.matter", node_count as usize);
     let pass = Weigh {
         surface: picture.surface.group.clone(),
         scene_rays: picture.scene_rays.clone(),
@@ -99,8 +99,8 @@ fn merge(
     cuts: BufferRef<u32>,
     (slot_count, group_count, group_lights): (u32, u32, u32),
 ) -> AreaLights {
-    let offsets = graph.buffer::<[u32; 2]>("spread.offsets", slot_count as usize + 1);
-    let counts = graph.buffer::<u32>("spread.light_counts", 2);
+    let offsets = graph.buffer::<[u32; 2]>("caches/spread.offsets", slot_count as usize + 1);
+    let counts = graph.buffer::<u32>("caches/spread.light_counts", 2);
     // On each level fewer nodes of a group than its lights are to be matter more than a light's bound.
     let most_lights = 3 * LEVELS * group_lights + 1;
     let pass = ScanCuts {
@@ -111,8 +111,8 @@ fn merge(
     };
     let pass = graph.pass("caches/spread/scan", pass).count("lights", counts, 0).count("groups", counts, 1);
     pass.groups([1, 1, 1]);
-    let lights = graph.buffer::<[f32; 4]>("spread.lights", 2 * slot_count as usize);
-    let lists = graph.buffer::<[u32; 4]>("spread.light_groups", 2 * group_count as usize);
+    let lights = graph.buffer::<[f32; 4]>("caches/spread.lights", 2 * slot_count as usize);
+    let lists = graph.buffer::<[u32; 4]>("caches/spread.light_groups", 2 * group_count as usize);
     let pass = Merge {
         slots: slots.texels(FLOATS),
         cuts: cuts.texels(WORD),

@@ -24,6 +24,7 @@ use document::Document;
 pub use files::ReadFile;
 use files::{Files, Source, read_main};
 use loader::Loader;
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -129,6 +130,7 @@ impl Scene {
             loader.warn(format!("extensions that are not supported are ignored: {}", unknown.join(", ")));
         }
         loader.load().map_err(malformed)?;
+        loader.note_dark_cameras();
         Ok(loader.scene)
     }
 }
@@ -140,6 +142,18 @@ fn unsupported(extensions: &[String]) -> Vec<&str> {
 }
 
 impl Loader<'_> {
+    /// Which cameras the file says to stand in the dark.
+    fn note_dark_cameras(&mut self) {
+        let names = self.document.asset.extras["dark"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        for name in names {
+            if self.scene.camera_view(Some(name)).is_ok() {
+                self.scene.dark_cameras.push(name.to_owned());
+            } else {
+                self.warn(format!("there is no camera {name:?}, which is said to stand in the dark"));
+            }
+        }
+    }
+
     fn load(&mut self) -> Result<(), String> {
         let tree = self.read_tree()?;
         let mesh_indices: BTreeSet<usize> = tree.iter().filter_map(|branch| branch.node.mesh).collect();

@@ -15,12 +15,8 @@ const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
 /// Maps that memory is held for at first, and texels.
 const LEAST: usize = 1024;
 const LEAST_TEXELS: usize = 1 << 21;
-/// Invocations of a map, which share the groups of lights.
-const LANES: u32 = 64;
-/// Steps of an invocation's loops: for each light at most, in parts that go to four texels, for a ray to a group of them, and of a cone along one axis.
+/// Steps of an invocation's loops for each light at most, in parts that go to four texels.
 const LIGHT_STEPS: u32 = 82;
-const RAY_STEPS: u32 = 341;
-const CONE_STEPS: u32 = 3;
 
 /// The maps of a frame.
 #[derive(Clone, Copy)]
@@ -107,17 +103,6 @@ pub(super) fn maps(
     maps
 }
 
-/// Groups of lights that one pass may take.
-fn groups_at_once(lights: &AreaLights, sight: &CacheSight, loop_steps: u32) -> u32 {
-    let seen = match sight {
-        CacheSight::Open => 0,
-        CacheSight::Rays => RAY_STEPS,
-        CacheSight::Cones(voxels) => CONE_STEPS * voxels.resolution,
-    };
-    let steps = LIGHT_STEPS * lights.group_lights + seen;
-    LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
-}
-
 /// Declares the passes that write all lights to all maps.
 fn write(
     cx: &mut FrameCx<'_, '_>,
@@ -135,17 +120,12 @@ fn write(
     };
     let surface = cx.frame.surface.group.clone();
     let graph = &mut *cx.graph;
-    let most = groups_at_once(lights, &sight, graph.traits().loop_steps);
+    let loop_steps = graph.traits().loop_steps;
     let (map_side, cached, fill) = (options.size.cast_signed(), u32::from(options.is_cached()), options.fill_kind());
-    for first in (0..lights.group_count.max(1)).step_by(most as usize) {
-        let name = if first == 0 {
-            "specular/radiance-maps/write".to_owned()
-        } else {
-            format!("specular/radiance-maps/write-{}", first / most + 1)
-        };
-        let sums = if first == 0 { maps.sums.start_then_read() } else { maps.sums.read_write() };
-        let (first_group, capacity) = (first.cast_signed(), maps.capacity);
-        let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
+    for chunk in lights.chunks(sight, LIGHT_STEPS * lights.group_lights, loop_steps) {
+        let name = chunk.name("specular/radiance-maps/write");
+        let (first_group, end_group, capacity) = (chunk.first_group, chunk.end_group, maps.capacity);
+        let sums = if first_group == 0 { maps.sums.start_then_read() } else { maps.sums.read_write() };
         let (area_lights, light_caches, surface) = (lights.group.clone(), caches.group.clone(), surface.clone());
         let (map_head, map_caches, map_bounds) =
             (maps.head.texels(WORD), maps.caches.texels(WORD), bounds.texels(FLOAT));

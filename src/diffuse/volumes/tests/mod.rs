@@ -1,5 +1,10 @@
 //! Radiance volumes against paths, and what stands when something moves.
 
+mod storage;
+mod together;
+mod updates;
+mod views;
+
 use glam::{DAffine3, DVec3};
 
 use crate::gpu_tests::against_paths::{against_paths, leaks, passes_run};
@@ -7,8 +12,22 @@ use crate::gpu_tests::scenes::{
     add_light, box_faces, builtin, closed_box, floor, lambert, place, quad, request, settings_of, view,
 };
 use crate::gpu_tests::session::Session;
-use crate::renderer::{FrameRequest, Preset, Settings, Slot, Technique, Timing};
+use crate::renderer::{Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{LightId, LightKind, Material, Scene};
+
+/// What a pass counted, in all its parts.
+fn counted(frame: &Frame, pass: &str, name: &str) -> u64 {
+    let rows = frame.timings.passes.iter().filter(|row| row.skipped.is_none() && row.full_name() == pass);
+    rows.filter_map(|row| row.work.get(name)).sum()
+}
+
+/// Root mean square of what two pictures differ by, over the mean of the second.
+fn difference(found: &Frame, expected: &Frame) -> f64 {
+    let [found, expected] = [found, expected].map(|frame| frame.slots[&Slot::Diffuse].pixels.as_flattened());
+    let squares: f64 = found.iter().zip(expected).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    let sum: f64 = expected.iter().copied().map(f64::from).sum();
+    (squares / expected.len() as f64).sqrt() / (sum / expected.len() as f64)
+}
 
 #[test]
 fn pictures_are_those_of_paths_of_one_bounce() {
