@@ -155,15 +155,4 @@ mod tests {
         assert!(!without.contains("(right)"));
         assert_eq!(passes_plot(&Run::default(), None), None);
     }
-
-    /// The layers reach the line of the frame but for what belongs to no pass.
-    #[test]
-    fn layers_end_below_the_frame() {
-        let run = example(3);
-        let frames = &run.over_time.as_ref().expect("played").frames;
-        for (index, frame) in frames.iter().enumerate() {
-            let sum: f64 = layers(&run).iter().map(|layer| layer.ms[index]).sum();
-            assert!(sum < frame.serialised_ms && sum > 0.8 * frame.serialised_ms, "{index}");
-        }
-    }
 }
