@@ -36,6 +36,8 @@ pub(crate) struct Surfaces {
     /// triangle by triangle (glsl/lib/bvh.glsl).
     pub(super) wide: bool,
     pub(crate) triangle_count: u32,
+    /// Of the hierarchy's leaves: large triangles stand there more than once, those without area not at all.
+    pub(crate) leaf_triangle_count: u32,
     /// The size that all but a sixteenth of the triangles have, metres.
     pub(crate) fine_size: f64,
     /// Of the triangles that matter, m².
@@ -111,6 +113,7 @@ impl Surfaces {
             cutouts: triangles.iter().any(cut),
             wide: triangles.iter().any(|triangle| triangle.farthest(DVec3::ZERO) / 65536.0 > fine / 8.0),
             triangle_count: u32::try_from(triangles.len()).unwrap_or(0),
+            leaf_triangle_count: u32::try_from(bvh.triangles.len() / 3).unwrap_or(0),
             fine_size: fine_size(areas.iter().map(|&area| f64::from(area))),
             own_area: areas.iter().map(|&area| f64::from(area)).sum(),
             area: triangles.iter().filter(matters).map(TracedTriangle::area).sum(),
