@@ -247,7 +247,7 @@ fn stage_needs(stage: &CompiledStage) -> String {
         |counts: fn(&BindingKind) -> bool| stage.stage.bindings.iter().filter(|binding| counts(&binding.kind)).count();
     format!(
         "vp::StageNeeds {{ sampled_images: {}, samplers: {}, storage_images: {}, uniform_buffers: {}, storage_buffers: {}, \
-         shared_bytes: {}, subgroup_operations: {} }}",
+         shared_bytes: {}, subgroup_operations: {}, clip_distances: {} }}",
         count(|kind| matches!(kind, BindingKind::SampledImage(_) | BindingKind::TexelBuffer)),
         count(|kind| matches!(kind, BindingKind::SampledImage(_))),
         count(|kind| matches!(kind, BindingKind::StorageImage { .. })),
@@ -255,6 +255,7 @@ fn stage_needs(stage: &CompiledStage) -> String {
         count(|kind| matches!(kind, BindingKind::Storage { .. })),
         stage.needs.shared_bytes,
         stage.needs.subgroup_operations,
+        stage.needs.clip_distances,
     )
 }
 

@@ -1,4 +1,4 @@
-//! What a stage asks of a device besides bindings: memory that a work group shares, and operations over subgroups.
+//! What a stage asks of a device besides bindings: memory that a work group shares, operations over subgroups, clipping by distances of its own.
 
 use std::collections::BTreeMap;
 
@@ -11,6 +11,7 @@ pub(crate) struct StageNeeds {
     pub(crate) shared_bytes: u32,
     /// As Vulkan's `VkSubgroupFeatureFlags` count them.
     pub(crate) subgroup_operations: u32,
+    pub(crate) clip_distances: bool,
 }
 
 /// Capabilities of SPIR-V, and the bit of the operations that they stand for.
@@ -40,6 +41,7 @@ pub(crate) fn needs(words: &[u32]) -> Result<StageNeeds, String> {
             Op::Capability => {
                 let known = OPERATIONS.iter().find(|(capability, _)| *capability as u32 == operands[0]);
                 found.subgroup_operations |= known.map_or(0, |(_, bit)| *bit);
+                found.clip_distances |= operands[0] == Capability::ClipDistance as u32;
             }
             Op::Constant | Op::SpecConstant => drop(constants.insert(operands[1], operands[2])),
             Op::TypeBool => drop(sizes.insert(operands[0], 4)),

@@ -502,13 +502,16 @@ BLUE, OCHRE, SAND = (0.12, 0.2, 0.5), (0.7, 0.42, 0.12), (0.7, 0.62, 0.5)
 GOLD = (1.0, 0.78, 0.34)
 
 
-def cornell(s, blocks=True, panel=None, floor=None, metals=None):
-    """A Cornell box, 2 x 2 m and 3.6 m deep: closed, its camera inside before the front wall."""
+def cornell(s, blocks=True, panel=None, floor=None, metals=None, bottom=True):
+    """A Cornell box, 2 x 2 m and 3.6 m deep: closed, its camera inside before the front wall. Without its bottom
+    something else has to close it."""
     white, red, green = s.diffuse("white", WHITE), s.diffuse("red", RED), s.diffuse("green", GREEN)
 
     def paint(side, cell):
         if panel is not None and side == "+y" and (cell.i, cell.k) == (1, 1):
             return panel
+        if side == "-y" and not bottom:
+            return None
         return {"-x": red, "+x": green, "-y": white if floor is None else floor}.get(side, white)
 
     hole_x, hole_z = ([-0.3, 0.3], [-0.25, 0.25]) if panel is not None else ([], [])
@@ -591,22 +594,26 @@ def ring_occluded(s):
     s.camera("camera", (0.35, 2.15, 1.8), (0.0, 0.4, 0.05), 44)
 
 
-def waves(x, z):
-    """Water level 1 m with five plane waves; returns height and slopes."""
-    height, slope_x, slope_z = 1.0, 0.0, 0.0
-    for amplitude, length, degrees, phase in WAVES:
-        k = 2 * math.pi / length
-        kx, kz = k * math.cos(math.radians(degrees)), k * math.sin(math.radians(degrees))
-        angle = kx * x + kz * z + phase
-        height += amplitude * math.sin(angle)
-        slope_x += amplitude * kx * math.cos(angle)
-        slope_z += amplitude * kz * math.cos(angle)
-    return height, slope_x, slope_z
+def rippled(level, waves):
+    """A plane at a height in metres with waves on it: a function that returns height and slopes."""
+    def height(x, z):
+        y, slope_x, slope_z = level, 0.0, 0.0
+        for amplitude, length, degrees, phase in waves:
+            k = 2 * math.pi / length
+            kx, kz = k * math.cos(math.radians(degrees)), k * math.sin(math.radians(degrees))
+            angle = kx * x + kz * z + phase
+            y += amplitude * math.sin(angle)
+            slope_x += amplitude * kx * math.cos(angle)
+            slope_z += amplitude * kz * math.cos(angle)
+        return y, slope_x, slope_z
+    return height
 
 
 # amplitude in m, wavelength in m, direction in degrees, phase
 WAVES = [(0.0075, 0.9, 12, 0.3), (0.006, 0.72, 71, 1.9), (0.0045, 0.61, -48, 4.1), (0.003, 0.47, 128, 2.6),
          (0.002, 0.39, 30, 5.2)]
+HILLS = [(0.026, 1.3, 20, 0.4), (0.018, 0.9, 103, 2.2), (0.012, 0.61, -37, 4.4), (0.008, 0.43, 66, 1.1),
+         (0.005, 0.31, -80, 3.3), (0.003, 0.22, 5, 5.6)]
 
 
 @scene("water", "Room with a metre of wavy water (one double-sided sheet that reaches into the walls), after Quyen 4.2: "
@@ -619,11 +626,18 @@ def water(s):
         "KHR_materials_ior": {"ior": 1.33},
         "KHR_materials_volume": {"thicknessFactor": 1},
     })
-    s.add("water", height_field((-2.02, -1.52), (2.02, 1.52), (64, 64), waves), sheet_of_water)
+    s.add("water", height_field((-2.02, -1.52), (2.02, 1.52), (64, 64), rippled(1.0, WAVES)), sheet_of_water)
     s.light("low spot", "spot", (-1.85, 1.6, 0), (-0.5, 1.0, 0), intensity=38.0, cone=(13, 15))
     s.light("ceiling lamp", "point", (-0.3, 2.4, 0.1), intensity=1.5)
     s.camera("above", (-1.7, 2.3, 1.1), (1.3, 0.95, -0.35), 62)
     s.camera("under", (-1.0, 0.8, 1.3), (0.6, 0.0, -0.35), 68)
+
+
+@scene("bumpy", "Cornell box with a bumpy floor, after Larsen & Christensen 2004, figures 1 and 6: what many triangles cost")
+def bumpy(s):
+    cornell(s, bottom=False)
+    s.add("floor", height_field((-1.02, -1.02), (1.02, 2.62), (72, 90), rippled(0.08, HILLS)), s.diffuse("floor", WHITE))
+    s.light("lamp", "point", (0, 1.45, 0.1), intensity=3.0)
 
 
 @scene("corridor", "L-shaped corridor lit from the end of its other leg: light that comes round the corner")

@@ -4,16 +4,16 @@
 #include "groups/scene_rays.glsl"
 #include "lib/cutouts.glsl"
 #include "lib/bvh.glsl"
-#include "lib/hit_albedo.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/sobol.glsl"
-#include "lightmaps/lookup.glsl"
+#include "lightmaps/gathered.glsl"
 
-// One texel of the indirect illumination map (IIM; Larsen & Christensen 2004, section 4), by rays in place of a hemicube, some of them in each pass:
+// One texel of the indirect illumination map (IIM; Larsen & Christensen 2004, section 4), by rays in place of a hemicube (glsl/hemicube/), some of
+// them in each pass:
 //
 //   E = ∫ L cosθ dω ≈ π/N Σ (ρ_i/π)·E_AIM(y_i)        W/m²
 //
-// over N rays by the cosine, ρ_i the albedo of the diffuse lobe where ray i ends. What emits, and what specular lobes send, belongs to other slots.
+// over N rays by the cosine, ρ_i the albedo of the diffuse lobe where ray i ends (lightmaps/gathered.glsl).
 
 layout(local_size_x = 64) in;
 
@@ -32,19 +32,7 @@ const uint STREAM = 0x6A7E2u;
 
 vec3 radiance_along(vec3 origin, vec3 direction) {
     Hit hit = closest_hit(origin, direction, 3e38);
-    if (hit.triangle == NO_TRIANGLE) {
-        return vec3(0.0);
-    }
-    Triangle triangle = load_triangle(triangles, hit.triangle);
-    vec3 albedo = albedo_of_hit(triangle, hit);
-    if (max3(albedo) <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 face = front_normal(triangle);
-    bool back = dot(face, direction) > 0.0;
-    vec3 position = point_of_hit(triangle, hit.barycentric, face, origin, hit.distance * direction);
-    Cell cell = texels_at(hit.triangle, hit.barycentric, back, position, back ? -face : face);
-    return albedo * INVERSE_PI * light_of(cell, received);
+    return hit.triangle == NO_TRIANGLE ? vec3(0.0) : radiance_of_hit(hit, origin, direction, received);
 }
 
 void main() {

@@ -21,6 +21,7 @@ const BLEND: vk::FormatFeatureFlags = vk::FormatFeatureFlags::COLOR_ATTACHMENT_B
 /// Programs by their names, and what images of a format serve them for beyond what every device offers.
 const IMAGES: &[(&str, vk::Format, vk::FormatFeatureFlags)] = &[
     ("gbuffer/*", vk::Format::D32_SFLOAT, DEPTH),
+    ("hemicube/draw", vk::Format::D32_SFLOAT, DEPTH),
     ("light_views/*", vk::Format::D32_SFLOAT, DEPTH),
     ("photons/specular*", vk::Format::D32_SFLOAT, DEPTH),
     ("photon_lists/peel*", vk::Format::D32_SFLOAT, DEPTH),

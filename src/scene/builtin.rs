@@ -33,6 +33,7 @@ builtins! {
     "ring" => "ring.glb",
     "ring-occluded" => "ring-occluded.glb",
     "water" => "water.glb",
+    "bumpy" => "bumpy.glb",
     "maze" => "maze.glb",
     "lights" => "lights.glb",
     "textured" => "textured.glb",

@@ -47,6 +47,7 @@ impl Features {
             multi_draw_indirect: offered.core.multi_draw_indirect,
             pipeline_statistics_query: offered.core.pipeline_statistics_query,
             sampler_anisotropy: offered.core.sampler_anisotropy,
+            shader_clip_distance: offered.core.shader_clip_distance,
             // GPU-assisted validation counts in vertex shaders and with 64-bit integers.
             vertex_pipeline_stores_and_atomics: offered.core.vertex_pipeline_stores_and_atomics,
             shader_int64: if validation == Validation::GpuAssisted { offered.core.shader_int64 } else { vk::FALSE },

@@ -195,6 +195,7 @@ impl Survey {
         }
         self.queue_family = queue_family;
         self.offer.geometry_shaders = enabled.core.geometry_shader == vk::TRUE;
+        self.offer.of_stage.clip_distances = enabled.core.shader_clip_distance == vk::TRUE;
         self.features = enabled;
         Ok(())
     }

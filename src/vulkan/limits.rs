@@ -40,6 +40,7 @@ impl Offer {
                 storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
                 shared_bytes: limits.max_compute_shared_memory_size,
                 subgroup_operations: vulkan11.subgroup_supported_operations.as_raw(),
+                clip_distances: features.shader_clip_distance == vk::TRUE,
             },
             stage_resources: limits.max_per_stage_resources,
             push_bytes: limits.max_push_constants_size,
@@ -78,6 +79,9 @@ impl Offer {
         }
         if !self.geometry_shaders && program.stages.iter().any(|stage| stage.kind == StageKind::Geometry) {
             faults.push("geometry shaders".to_owned());
+        }
+        if !self.of_stage.clip_distances && program.stages.iter().any(|stage| stage.needs.clip_distances) {
+            faults.push("clip distances".to_owned());
         }
         for stage in program.stages {
             let asked = stage.needs.subgroup_operations;
@@ -120,6 +124,7 @@ pub(crate) mod tests {
                 storage_buffers: 1000,
                 shared_bytes: 1 << 16,
                 subgroup_operations: u32::MAX,
+                clip_distances: true,
             },
             stage_resources: 1000,
             push_bytes: 256,
@@ -141,6 +146,7 @@ pub(crate) mod tests {
             storage_buffers: 6,
             shared_bytes: 20_000,
             subgroup_operations: 0b1001,
+            clip_distances: true,
         };
         const STAGES: &[Stage] = &[Stage { kind: StageKind::Compute, needs: NEEDS, spirv: Spirv(&[]) }];
         const BINDINGS: &[Binding] = &[Binding { set: 2, binding: 0, kind: BindingKind::Storage, integers: false }];
@@ -159,7 +165,7 @@ pub(crate) mod tests {
             offer.lacks(&program).join("; ")
         };
         type Case = (fn(&mut Offer), &'static str);
-        let cases: [Case; 12] = [
+        let cases: [Case; 13] = [
             (|offer| offer.sets = 2, "3 descriptor sets (2 are offered)"),
             (
                 |offer| offer.of_stage.sampled_images = 16,
@@ -178,6 +184,7 @@ pub(crate) mod tests {
             (|offer| offer.invocations = 64, "128 invocations in a group (64 are offered)"),
             (|offer| offer.local_size = [1024, 8, 1], "16 invocations along a side of a group (8 are offered)"),
             (|offer| offer.of_stage.subgroup_operations = 1, "subgroup operations (ballot)"),
+            (|offer| offer.of_stage.clip_distances = false, "clip distances"),
         ];
         for (change, expected) in cases {
             assert_eq!(with(change), expected);
@@ -196,6 +203,7 @@ pub(crate) mod tests {
             storage_buffers: 0,
             shared_bytes: 0,
             subgroup_operations: 0,
+            clip_distances: false,
         };
         const STAGES: &[Stage] = &[Stage { kind: StageKind::Geometry, needs: NEEDS, spirv: Spirv(&[]) }];
         let program = Program {

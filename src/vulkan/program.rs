@@ -67,6 +67,7 @@ pub(crate) struct StageNeeds {
     pub(crate) shared_bytes: u32,
     /// `VkSubgroupFeatureFlags`.
     pub(crate) subgroup_operations: u32,
+    pub(crate) clip_distances: bool,
 }
 
 impl StageNeeds {

@@ -65,6 +65,7 @@ fn the_grids_that_are_checked_in_are_sound() {
         ("reich-pixels", 3),
         ("reich-maps", 61),
         ("larsen", 44),
+        ("larsen-maps", 50),
     ];
     for (name, count) in counts {
         let path = format!("sweeps/{name}.toml");

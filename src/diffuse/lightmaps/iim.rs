@@ -1,21 +1,15 @@
-//! The indirect illumination map: final gathering at texels.
+//! The indirect illumination map: final gathering at texels, by rays or by hemicubes.
 
 use super::formats::{FLOATS4, WORD};
-use super::options::LightmapsOptions;
-use super::texels::LightTexels;
+use super::hemicube;
+use super::options::{LightmapsGather, LightmapsOptions};
+use super::texels::{Chosen, LightTexels};
 use crate::graph::Graph;
 use crate::graph::bindings::BufferRef;
 use crate::shaders::lightmaps::{Gather, GatherPush};
 
 /// Steps that the loops of one ray may take: through the hierarchy, and where it ends.
 const STEPS: u32 = 1024;
-
-/// Texels to gather: groups of 64 in three words and how many there are; their numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Chosen {
-    pub(super) head: BufferRef<u32>,
-    pub(super) list: BufferRef<u32>,
-}
 
 /// Declares passes that gather all texels.
 pub(super) fn all(
@@ -26,12 +20,25 @@ pub(super) fn all(
 ) -> BufferRef<[f32; 4]> {
     let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count());
     graph.fill_buffer("diffuse/lightmaps/iim/clear", gathered, 0);
-    gather(graph, texels, (aim, gathered), Chosen { head: texels.head, list: texels.used }, options);
+    gather(graph, texels, (aim, gathered), texels.all(), options);
     gathered
 }
 
 /// Declares passes that gather those that are chosen; the others stand.
 pub(super) fn gather(
+    graph: &mut Graph<'_>,
+    texels: &LightTexels,
+    maps: (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    chosen: Chosen,
+    options: &LightmapsOptions,
+) {
+    match options.gather {
+        LightmapsGather::Rays => by_rays(graph, texels, maps, chosen, options),
+        LightmapsGather::Hemicube => hemicube::gather(graph, texels, maps, chosen, options),
+    }
+}
+
+fn by_rays(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
     (aim, gathered): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),

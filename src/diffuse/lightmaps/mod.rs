@@ -3,8 +3,8 @@
 //! 1. Texels on all diffuse surfaces, and links between them: rays traced once (`texels.rs`). They stand while geometry and materials do.
 //! 2. The approximated illumination map (AIM): all light that texels receive, of the lights by shadow rays, of other texels along links (`aim.rs`). It stands while
 //!    lights do. Or by photons (`photons.rs`).
-//! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), all of them, or as many a frame as the options say
-//!    (`renewal.rs`).
+//! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), or by drawing what they see (`hemicube.rs`), all of
+//!    them, or as many a frame as the options say (`renewal.rs`).
 //! 4. Pixels interpolate the IIM (`shade.rs`). That alone follows the camera.
 //!
 //! Whoever takes the light off the device gets it on finer texels (`detail.rs`).
@@ -12,6 +12,7 @@
 mod aim;
 mod detail;
 mod formats;
+mod hemicube;
 mod iim;
 mod maps;
 pub(crate) mod options;
@@ -25,7 +26,7 @@ mod texels;
 use self::aim::Approximated;
 use self::detail::in_detail;
 use self::maps::Maps;
-use self::options::{LightmapsOptions, LightmapsSettle, LightmapsSource};
+use self::options::{LightmapsGather, LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
 use self::texels::LightTexels;
 use crate::graph::bindings::ImageRef;
@@ -50,8 +51,12 @@ impl Method for Lightmaps {
         Inputs { rays: Rays::ToLights, ..Inputs::default() }
     }
 
-    fn shaders(_: &LightmapsOptions, _: bool) -> Vec<&'static str> {
-        vec!["lightmaps/*", "buckets/*"]
+    fn shaders(options: &LightmapsOptions, _: bool) -> Vec<&'static str> {
+        let mut shaders = vec!["lightmaps/*", "buckets/*"];
+        if options.gather == LightmapsGather::Hemicube {
+            shaders.push("hemicube/*");
+        }
+        shaders
     }
 
     fn skip(options: &LightmapsOptions, facts: &Facts) -> Option<&'static str> {

@@ -27,6 +27,16 @@ choices! {
 }
 
 choices! {
+    /// How texels gather.
+    LightmapsGather {
+        /// By rays through the hierarchy.
+        Rays = "rays",
+        /// By drawing what they see: the paper.
+        Hemicube = "hemicube",
+    }
+}
+
+choices! {
     /// Which photons are sent again where something moves; those of a light that changed are in any case.
     LightmapsInvalidate {
         /// Groups of which a path crosses the bounds of what moved.
@@ -55,8 +65,14 @@ options! {
     texel: f64 = 0.0; OptionKind::Number(0.0, 1e6), "metres", "falls with the square";
     /// Texels on the area of all surfaces, and no more than 128 MiB hold links of; many small surfaces take up to twice as many.
     count: u32 = 24_000, draft = 8_000, high = 60_000; OptionKind::Integer(16, 1_000_000), "texels", "linear";
-    /// Rays that a texel is gathered by.
+    /// How texels gather what the approximated illumination map says of the surfaces around.
+    gather: LightmapsGather = LightmapsGather::Rays, paper = LightmapsGather::Hemicube; OptionKind::Choice(LightmapsGather::NAMES), "", "";
+    /// Rays that a texel is gathered by, with `gather=rays`.
     rays: u32 = 256, draft = 96, high = 1024; OptionKind::Integer(16, 4096), "rays", "linear";
+    /// Fragments along a side of what a texel sees, with `gather=hemicube`.
+    fragments: u32 = 16, draft = 8, high = 32, paper = 32; OptionKind::Integer(4, 64), "fragments", "its square";
+    /// How much the front of the hemicube is enlarged, and stands for the sides that are not drawn: the mean of what it shows does.
+    plane: f64 = 2.0; OptionKind::Number(0.5, 8.0), "times its side", "";
     /// What the approximated illumination map is made of.
     source: LightmapsSource = LightmapsSource::Rays, paper = LightmapsSource::Photons; OptionKind::Choice(LightmapsSource::NAMES), "", "";
     /// Photons; 0: 20,000 to 200,000 by the number of surfaces.

@@ -3,11 +3,11 @@
 
 use super::aim::Approximated;
 use super::formats::{FLOATS4, WORD, WORDS2};
-use super::iim::{Chosen, gather};
+use super::iim::gather;
 use super::maps::Maps;
 use super::options::{LightmapsOptions, LightmapsSettle, LightmapsShow, LightmapsSource};
 use super::photons;
-use super::texels::LightTexels;
+use super::texels::{Chosen, LightTexels};
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::kept::Advance;
@@ -49,10 +49,12 @@ pub(super) fn renewed(
     light: &Approximated,
     options: &LightmapsOptions,
 ) -> Maps {
-    let &LightmapsOptions { rays, samples, bounces, source, photons, nearest, show, .. } = options;
+    let &LightmapsOptions { rays, fragments, samples, bounces, source, photons, nearest, show, .. } = options;
     // Frames that show the AIM alone leave the other map behind.
     let aim_alone = show == LightmapsShow::Received;
-    let depends = hash_of(&(aim_alone, identity, texels.map.key, rays, texels.link_count, samples, bounces, source));
+    let gathering = (options.gather, rays, options.plane.to_bits(), fragments);
+    let scattering = (texels.link_count, samples, bounces, source);
+    let depends = hash_of(&(aim_alone, identity, texels.map.key, gathering, scattering));
     let content = hash_of(&(depends, scene.key, scene.sky.map(f32::to_bits), photons, nearest));
     let among = photons::SentAmong::declare(graph);
     let kept = Kept::declare(graph, texels.count(), depends);
@@ -76,7 +78,7 @@ pub(super) fn renewed(
     let now = graph.buffer::<[f32; 4]>("lightmaps.now", texels.count());
     graph.fill_buffer("diffuse/lightmaps/renewal/clear-now", now, 0);
     let listed = choose(graph, texels, (aim, &kept, now), options.texels);
-    let chosen = if at_once { Chosen { head: texels.head, list: texels.used } } else { listed };
+    let chosen = if at_once { texels.all() } else { listed };
     gather(graph, texels, (aim, kept.gathered), chosen, options);
     let pass = Note {
         list: chosen.list.texels(WORD),
@@ -158,5 +160,5 @@ fn choose(
         push: ChoosePush { used_count, most },
     };
     graph.pass("diffuse/lightmaps/renewal/choose", pass).groups([1, 1, 1]);
-    Chosen { head, list }
+    Chosen { head, list, most }
 }

@@ -21,10 +21,21 @@ pub(super) const fn most_texels(links: u32) -> u32 {
     LINKS / links
 }
 
+/// Texels to gather: groups of 64 in three words and how many there are; their numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Chosen {
+    pub(super) head: BufferRef<u32>,
+    pub(super) list: BufferRef<u32>,
+    /// There are no more.
+    pub(super) most: u32,
+}
+
 /// The texels of a frame.
 pub(super) struct LightTexels {
     pub(super) map: Arc<Lightmap>,
     pub(super) rays: SceneRays,
+    /// Triangles of the hierarchy's leaves.
+    pub(super) leaf_triangle_count: u32,
     pub(super) group: LightmapGroup,
     /// Those that are read: groups of 64 in three words, their number; and the numbers of all.
     pub(super) head: BufferRef<u32>,
@@ -94,11 +105,17 @@ impl LightTexels {
             &[number.div_ceil(64), 1, 1, number],
             crate::graph::Dependence::GEOMETRY,
         );
-        Some(LightTexels { map, rays, group, head, used, links, link_count, arrivals })
+        let leaf_triangle_count = scene.leaf_triangle_count;
+        Some(LightTexels { map, rays, leaf_triangle_count, group, head, used, links, link_count, arrivals })
     }
 
     pub(super) fn count(&self) -> usize {
         self.map.count as usize
+    }
+
+    /// All of them, to gather.
+    pub(super) fn all(&self) -> Chosen {
+        Chosen { head: self.head, list: self.used, most: self.map.used.len() as u32 }
     }
 
     pub(super) fn threads(&self) -> [u32; 3] {

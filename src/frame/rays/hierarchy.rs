@@ -14,6 +14,8 @@ pub(super) struct Hierarchy {
     key: u64,
     pub(super) nodes: Uploaded,
     pub(super) leaves: Uploaded,
+    /// Triangles in `leaves`.
+    pub(super) leaf_triangle_count: u32,
     /// As it was built, to be put around what moves. Kept once something moved: a scene that stands does not pay for it.
     built: Option<Arc<Bvh>>,
 }
@@ -56,6 +58,7 @@ impl Hierarchy {
             key,
             nodes: Uploaded::new(device, "traced.bvh_nodes", &bvh.nodes, WORDS, key)?,
             leaves: Uploaded::new(device, "traced.bvh_triangles", &bvh.triangles, FLOATS, key)?,
+            leaf_triangle_count: u32::try_from(bvh.triangles.len() / 3).unwrap_or(0),
             built,
         }))
     }

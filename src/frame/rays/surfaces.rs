@@ -25,6 +25,8 @@ pub(crate) struct Surfaces {
     hierarchy: Arc<Hierarchy>,
     /// Some triangle is there at some of its points only.
     pub(crate) cutouts: bool,
+    /// Of the hierarchy's leaves: large triangles stand there more than once, those without area not at all.
+    pub(crate) leaf_triangle_count: u32,
     /// How it came of what was before, if a part of the surfaces moved and nothing else happened.
     pub(crate) motion: Option<Motion>,
     /// Names the triangles' shapes: the same while things move and nothing else changes.
@@ -80,6 +82,7 @@ impl Surfaces {
         Ok(Surfaces {
             key,
             cutouts: flattened.triangles.iter().any(cut),
+            leaf_triangle_count: hierarchy.leaf_triangle_count,
             shapes: before.filter(|_| motion.is_some()).map_or(key, |before| before.shapes),
             motion,
             parts,

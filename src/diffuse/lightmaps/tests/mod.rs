@@ -1,6 +1,7 @@
 //! Light maps against closed forms and paths, and what stands when something changes.
 
 mod frames;
+mod hemicube;
 mod photons;
 
 use glam::{DAffine3, DVec3};
