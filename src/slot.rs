@@ -88,14 +88,21 @@ pub enum CausticPaths {
     /// None in what mirrors and glass show, L (D|S)* S D S⁺ E: what rays that follow reflections find of the slot `specular`. It has besides what of the slot
     /// `direct` only they find: lamps and the sky behind one surface of glass, and unlit surfaces in mirrors.
     Unmirrored,
+    /// All, and in mirrors too; the two slots have what they have of `Unmirrored`.
+    Mirrored,
     /// None, and nothing else specular before the first visible surface: L D* D E and L D⁺ S E, what maps of diffusely lit surfaces can show.
     None,
 }
 
 impl CausticPaths {
     /// All of them.
-    pub const ALL: [CausticPaths; 4] =
-        [CausticPaths::All, CausticPaths::Specular, CausticPaths::Unmirrored, CausticPaths::None];
+    pub const ALL: [CausticPaths; 5] = [
+        CausticPaths::All,
+        CausticPaths::Specular,
+        CausticPaths::Unmirrored,
+        CausticPaths::Mirrored,
+        CausticPaths::None,
+    ];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -103,6 +110,7 @@ impl CausticPaths {
             CausticPaths::All => "all",
             CausticPaths::Specular => "specular",
             CausticPaths::Unmirrored => "unmirrored",
+            CausticPaths::Mirrored => "mirrored",
             CausticPaths::None => "none",
         }
     }

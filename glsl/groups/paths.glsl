@@ -11,9 +11,11 @@ layout(constant_id = 49) const uint LIGHT_PATHS = 1u;
 layout(constant_id = 50) const uint PHOTONS = 0u;
 // 1: light that some diffuse lobe scattered on its way is left out of the slot `caustics`.
 layout(constant_id = 51) const uint SPECULAR_CAUSTICS = 0u;
-// 1: the slot `specular` leaves out caustics in what mirrors and glass show; lamps behind the first surface's glass and unlit surfaces in mirrors are there, not
-// in the slot `direct`.
-layout(constant_id = 52) const uint UNMIRRORED = 0u;
+// Unlike 0: lamps behind the first surface's glass and unlit surfaces in mirrors are in the slot `specular`, not in the slot `direct`, as rays that follow reflections
+// find them.
+layout(constant_id = 52) const uint FOLLOWED = 0u;
+// The slot `specular` leaves out caustics in what mirrors and glass show.
+const uint FOLLOWED_UNMIRRORED = 1u;
 // Reflections and refractions at most between the eye and what mirrors and glass show; 0: there is no such limit.
 layout(constant_id = 53) const uint MIRRORS = 0u;
 // Where there is one, scatterings at most between the light and that.

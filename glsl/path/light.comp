@@ -158,7 +158,7 @@ void main() {
     if (wanted) {
         uint flags = texelFetch(path_flags, int(path)).x;
         bool split = push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u;
-        bool behind = UNMIRRORED != 0u && push.depth == 0u && light_behind;
+        bool behind = FOLLOWED != 0u && push.depth == 0u && light_behind;
         uint slot = behind ? SLOT_SPECULAR : push.depth == 0u ? SLOT_DIRECT : split ? SLOT_DIFFUSE : flags & FLAG_SLOT_MASK;
         if (SPECULAR_CAUSTICS != 0u && push.depth > 1u && slot == SLOT_CAUSTICS) {
             light_of_lobes[0] = vec3(0.0);
@@ -166,7 +166,7 @@ void main() {
         if (DIFFUSE_ALONE != 0u && push.depth > 0u) {
             light_of_lobes[1] = vec3(0.0);
         }
-        if (UNMIRRORED != 0u && lights_mirrored(flags)) {
+        if (FOLLOWED == FOLLOWED_UNMIRRORED && lights_mirrored(flags)) {
             light_of_lobes[1] = vec3(0.0);
         }
         connection_rays[2u * path] = connection[0];

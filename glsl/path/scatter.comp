@@ -34,7 +34,7 @@ uint flags_after(uint flags, uint lobe, bool behind) {
     if (push.depth == 0u) {
         slot = SLOT_SPECULAR;
         kept |= diffuse ? FLAG_FIRST_DIFFUSE : 0u;
-        kept |= UNMIRRORED != 0u && behind ? FLAG_FIRST_BEHIND : 0u;
+        kept |= FOLLOWED != 0u && behind ? FLAG_FIRST_BEHIND : 0u;
     } else if (push.depth == 1u && (flags & FLAG_FIRST_DIFFUSE) != 0u) {
         slot = diffuse ? SLOT_DIFFUSE : SLOT_CAUSTICS;
     }
@@ -74,7 +74,7 @@ bool scatter(uint path) {
     if (DIFFUSE_ALONE != 0u && FROM_LIGHT == 0u && push.depth > 0u && drawn.lobe == LOBE_SPECULAR) {
         return false;
     }
-    if (UNMIRRORED != 0u && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && lights_mirrored(new_flags[path])) {
+    if (FOLLOWED == FOLLOWED_UNMIRRORED && FROM_LIGHT == 0u && drawn.lobe == LOBE_SPECULAR && lights_mirrored(new_flags[path])) {
         return false;
     }
     if (MIRRORS != 0u && FROM_LIGHT == 0u && !is_within_mirrors(new_flags[path], push.depth)) {

@@ -21,7 +21,7 @@ const uint FLAG_FIRST_DIFFUSE = 8u;      // a camera's path: its first vertex sc
 const uint FLAG_LAST_SPECULAR = 16u;     // the last vertex scattered specularly
 const uint FLAG_ALL_SPECULAR = 32u;      // every vertex so far did
 const uint FLAG_BEYOND_DIFFUSE = 64u;    // some vertex before the last scattered diffusely
-const uint FLAG_FIRST_BEHIND = 128u;     // the first vertex transmitted; told only where the slots ask for it (UNMIRRORED)
+const uint FLAG_FIRST_BEHIND = 128u;     // the first vertex transmitted; told only where the slots ask for it (FOLLOWED)
 
 // Whether the last vertex is a diffuse one that mirrors or glass show: specular lobes that light it make caustics.
 bool lights_mirrored(uint flags) {

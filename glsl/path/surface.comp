@@ -58,7 +58,7 @@ void add_radiance(uint path, uint slot, vec3 radiance) {
 
 // The slot of light that the path runs into here.
 uint slot_of_emission(uint flags, bool unlit) {
-    bool mirrored = UNMIRRORED != 0u && push.depth == 1u && ((flags & FLAG_FIRST_BEHIND) != 0u || (unlit && (flags & FLAG_FIRST_DIFFUSE) == 0u));
+    bool mirrored = FOLLOWED != 0u && push.depth == 1u && ((flags & FLAG_FIRST_BEHIND) != 0u || (unlit && (flags & FLAG_FIRST_DIFFUSE) == 0u));
     return mirrored ? SLOT_SPECULAR : push.depth == 0u ? SLOT_EMISSION : push.depth == 1u ? SLOT_DIRECT : flags & FLAG_SLOT_MASK;
 }
 

@@ -13,14 +13,9 @@
 #ifndef PHOTON_SPLAT_DISC
 #define PHOTON_SPLAT_DISC
 
+#include "photons/footprint.glsl"
+
 // In place of the cell of a photon that is left out.
 const uint NO_CELL = 0xFFFFFFFFu;
-
-const float MOST_HEIGHT = 0.25;
-
-// Metres from the disc's plane that a surface may be.
-float allowed_height(float radius, float tolerance) {
-    return max(MOST_HEIGHT * radius, tolerance);
-}
 
 #endif

@@ -4,8 +4,6 @@
 
 #include "photon_splat/kernel.glsl"
 
-const float LEAST_COSINE = 0.5;
-
 // One instruction a component, which the compiler may not choose by itself.
 float fused_dot(vec3 a, vec3 b) {
     return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));

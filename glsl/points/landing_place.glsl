@@ -3,7 +3,7 @@
 #ifndef POINTS_LANDING_PLACE
 #define POINTS_LANDING_PLACE
 
-#include "points/kept.glsl"
+#include "photons/kept.glsl"
 #include "points/place.glsl"
 
 // A point on the pixel's surface is no farther from the pixel's middle.

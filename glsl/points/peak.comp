@@ -1,6 +1,6 @@
 #version 460
 #include "lib/prelude.glsl"
-#include "points/kept.glsl"
+#include "photons/kept.glsl"
 
 // The largest flux of any photon in its brightest channel, W, as the bits of a float: what fixed point is scaled by (points/fixed_point.glsl).
 

@@ -1,7 +1,7 @@
 #version 460
 #include "lib/prelude.glsl"
 #include "points/fixed_point.glsl"
-#include "points/kept.glsl"
+#include "photons/kept.glsl"
 
 // The flux of all photons together in their brightest channels, in wholes by which all photons of the largest flux would have 2³¹: what fixed point is scaled by
 // (points/fixed_point.glsl). Few photons are as bright as the brightest one, and many places hold none.

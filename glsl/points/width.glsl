@@ -3,7 +3,7 @@
 #ifndef POINTS_WIDTH
 #define POINTS_WIDTH
 
-#include "points/kept.glsl"
+#include "photons/kept.glsl"
 #include "points/reach.glsl"
 
 struct Axes {

@@ -5,7 +5,7 @@
 #include "lib/vectors.glsl"
 
 // One slot of one marked pixel: the mean of its samples in place of its centre (supersample.comp), always added up in the same order. What shines by itself, and of
-// the listed points direct light and, by the irradiance E that some method says, diffuse light w·ρ/π·E: of first surfaces the slots `direct` and `diffuse`, of what
+// the listed points direct light and, by the irradiance E that some method says, diffuse light and caustics w·ρ/π·E: of first surfaces the slots `direct` and `diffuse`, of what
 // mirrors and glass show `specular`.
 
 layout(local_size_x = 64) in;
@@ -18,6 +18,8 @@ const uint DIFFUSE = 3u;
 layout(constant_id = 0) const uint SLOT = 0u;
 // 1: there is diffuse light.
 layout(constant_id = 1) const uint HAS_FIELD = 0u;
+// 1: there are caustics.
+layout(constant_id = 2) const uint HAS_CAUSTICS = 0u;
 
 layout(set = 0, binding = 0) uniform usamplerBuffer marked;
 layout(set = 0, binding = 1) uniform usamplerBuffer marked_count;  // word 3
@@ -26,6 +28,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer points;
 layout(set = 0, binding = 4) uniform samplerBuffer light;
 layout(set = 0, binding = 5) uniform samplerBuffer irradiance;     // W/m²
 layout(set = 0, binding = 6, rgba32f) writeonly uniform image2D image;
+layout(set = 0, binding = 7) uniform samplerBuffer caustics;       // W/m²
 
 vec3 light_of_point(int index) {
     Mirrored point = load_mirrored(points, uint(index));
@@ -34,8 +37,10 @@ vec3 light_of_point(int index) {
         return vec3(0.0);
     }
     vec3 found = SLOT != DIFFUSE ? texelFetch(light, index).rgb : vec3(0.0);
-    if (HAS_FIELD != 0u && SLOT != DIRECT) {
-        found += point.weight * indirect_diffuse_albedo(point.surface) * texelFetch(irradiance, index).rgb * INVERSE_PI;
+    if ((HAS_FIELD != 0u || HAS_CAUSTICS != 0u) && SLOT != DIRECT) {
+        vec3 received = HAS_FIELD != 0u ? texelFetch(irradiance, index).rgb : vec3(0.0);
+        received += HAS_CAUSTICS != 0u ? texelFetch(caustics, index).rgb : vec3(0.0);
+        found += point.weight * indirect_diffuse_albedo(point.surface) * received * INVERSE_PI;
     }
     return is_finite(found) ? found : vec3(0.0);
 }

@@ -6,12 +6,14 @@
 #include "lib/vectors.glsl"
 
 // The slot `specular` of one pixel: what shines by itself on its ways, and the light of all surfaces that they come to, always in the same order. Diffuse light
-// comes as irradiance E, if some method offers it, and is reflected by each point's own albedo: w·ρ/π·E.
+// and caustics come as irradiance E, if some method offers them, and are reflected by each point's own albedo: w·ρ/π·E.
 
 layout(local_size_x = 64) in;
 
 // 1: there is diffuse light.
 layout(constant_id = 0) const uint HAS_FIELD = 0u;
+// 1: there are caustics.
+layout(constant_id = 1) const uint HAS_CAUSTICS = 0u;
 
 layout(set = 0, binding = 0) uniform usampler2D heads;
 layout(set = 0, binding = 1) uniform sampler2D shining;
@@ -19,6 +21,7 @@ layout(set = 0, binding = 2) uniform usamplerBuffer points;
 layout(set = 0, binding = 3) uniform samplerBuffer light;
 layout(set = 0, binding = 4) uniform samplerBuffer irradiance;  // W/m²
 layout(set = 0, binding = 5, rgba32f) writeonly uniform image2D specular;
+layout(set = 0, binding = 6) uniform samplerBuffer caustics;    // W/m²
 
 layout(push_constant, scalar) uniform Push { uint first_row; } push;
 
@@ -32,9 +35,11 @@ void main() {
     [[dont_unroll]] while (next != 0u) {
         uint index = next - 1u;
         vec3 found = texelFetch(light, int(index)).rgb;
-        if (HAS_FIELD != 0u) {
+        if (HAS_FIELD != 0u || HAS_CAUSTICS != 0u) {
             Mirrored point = load_mirrored(points, index);
-            found += point.weight * indirect_diffuse_albedo(point.surface) * texelFetch(irradiance, int(index)).rgb * INVERSE_PI;
+            vec3 received = HAS_FIELD != 0u ? texelFetch(irradiance, int(index)).rgb : vec3(0.0);
+            received += HAS_CAUSTICS != 0u ? texelFetch(caustics, int(index)).rgb : vec3(0.0);
+            found += point.weight * indirect_diffuse_albedo(point.surface) * received * INVERSE_PI;
         }
         radiance += is_finite(found) ? found : vec3(0.0);
         next = texelFetch(points, 4 * int(index)).w;

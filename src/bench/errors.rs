@@ -56,7 +56,8 @@ impl<'a> References<'a> {
             let request = ReferenceRequest {
                 size,
                 camera: subject.camera.clone(),
-                estimator: Estimator::Path,
+                // Of small lamps paths do not find such caustics.
+                estimator: if caustics == CausticPaths::Mirrored { Estimator::Auto } else { Estimator::Path },
                 bounces,
                 caustics,
                 mirrors,

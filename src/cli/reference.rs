@@ -42,7 +42,7 @@ pub(crate) struct ReferenceArgs {
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
     /// Which caustics there are: all; in the slot caustics only light that met nothing but specular lobes on its way; unmirrored: none in what mirrors and glass show, and lamps
-    /// behind one surface of glass in the slot specular; none: nothing specular before the first visible surface
+    /// behind one surface of glass in the slot specular; mirrored: all, with those lamps there; none: nothing specular before the first visible surface
     #[arg(long, value_parser = caustics(), default_value = "all")]
     caustics: CausticPaths,
     /// Reflections and refractions at most between the eye and what mirrors and glass show; --bounces limits the way of light to that then [default: they are bounces]

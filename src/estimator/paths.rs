@@ -52,8 +52,8 @@ pub(super) struct Variants {
     pub(super) photons: u32,
     /// The slot `caustics` leaves out light that some diffuse lobe scattered on its way.
     pub(super) specular_caustics: u32,
-    /// The slot `specular` leaves out caustics, and has lamps behind the first surface's glass.
-    pub(super) unmirrored: u32,
+    /// The slots `specular` and `direct` are as rays that follow reflections divide them (FOLLOWED_ of glsl/groups/paths.glsl).
+    pub(super) followed: u32,
     /// Between the lights and the first visible surface light scatters diffusely alone.
     pub(super) diffuse_alone: u32,
     /// Reflections and refractions between the eye and what mirrors show at most, and scatterings from there on; 0: they are scatterings like others.
@@ -67,7 +67,11 @@ impl Variants {
             light_paths: u32::from(view.needs_light_paths(scene)),
             photons: 0,
             specular_caustics: u32::from(view.caustics == CausticPaths::Specular),
-            unmirrored: u32::from(view.caustics == CausticPaths::Unmirrored),
+            followed: match view.caustics {
+                CausticPaths::Unmirrored => 1,
+                CausticPaths::Mirrored => 2,
+                _ => 0,
+            },
             diffuse_alone: u32::from(view.caustics == CausticPaths::None),
             mirrors: view.mirrors.unwrap_or(0),
             bounces: view.bounces.unwrap_or(u32::MAX),
@@ -152,7 +156,7 @@ impl Paths {
             light_paths: self.variants.light_paths,
             photons: self.variants.photons,
             specular_caustics: self.variants.specular_caustics,
-            unmirrored: self.variants.unmirrored,
+            followed: self.variants.followed,
             diffuse_alone: self.variants.diffuse_alone,
             mirrors: self.variants.mirrors,
             bounces: self.variants.bounces,

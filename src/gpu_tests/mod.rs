@@ -34,6 +34,7 @@ mod limits;
 mod lists;
 mod loader;
 mod memory;
+mod mirrored_caustics;
 mod numbers;
 mod over_time;
 mod path_caustics;

@@ -7,7 +7,7 @@ use super::scenes::{floor, lambert, place, quad};
 use super::session::Session;
 use super::splat_bench::{Bench, Landed, from_above, largest, oblique, orthographic, random, white_floor};
 use crate::caustics::points::draw::draw;
-use crate::caustics::points::kept::KeptPhotons;
+use crate::frame::photons::kept::KeptPhotons;
 use crate::renderer::Timing;
 use crate::renderer::options::{PointOptions, PointTiles};
 

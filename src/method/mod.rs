@@ -27,7 +27,7 @@ pub(crate) trait Method {
     const NAME: &'static str;
     const SLOT: Slot;
     type Options: Options;
-    /// Of the slot `diffuse`: it says what diffuse light comes to points that mirrors show (`frame/mirrored.rs`).
+    /// Of the slots `diffuse` and `caustics`: it says what of its light comes to points that mirrors show (`frame/mirrored.rs`).
     const LIGHTS_MIRRORED: bool = false;
     /// Of the slot `direct`: mirrors show lamps and the sky.
     const SHOWS_LAMPS: bool = false;

@@ -72,7 +72,8 @@ fn are_photons_better(context: &Context, scene: &Arc<TracedScene>, request: &Est
     // L S D S E scatters twice before the eye's surface.
     let caustics = scene.needs_light_paths(request.bounces) && request.bounces != Some(1);
     // Photons know no narrower caustics.
-    if !caustics || request.caustics != CausticPaths::All || request.mirrors.is_some() {
+    let known = matches!(request.caustics, CausticPaths::All | CausticPaths::Mirrored);
+    if !caustics || !known || request.mirrors.is_some() {
         return Ok(false);
     }
     if scene.punctual_count > 0 {

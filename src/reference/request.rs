@@ -69,7 +69,9 @@ pub(super) fn source<'a>(
     let scene = || TracedScene::new(device, scene).map(Arc::new);
     let running = match estimator {
         Estimator::Path => Path::open(context.pipelines())?,
-        Estimator::Sppm if caustics != CausticPaths::All || mirrors.is_some() => return Err(Error::SppmCaustics),
+        Estimator::Sppm if !matches!(caustics, CausticPaths::All | CausticPaths::Mirrored) || mirrors.is_some() => {
+            return Err(Error::SppmCaustics);
+        }
         Estimator::Sppm => Sppm::open(context.pipelines())?,
         Estimator::Auto => return Ok(Box::new(AutoSource::new(context, &scene()?, &request)?)),
     };

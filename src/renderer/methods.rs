@@ -242,15 +242,23 @@ impl Settings {
         let indirect = [Slot::Diffuse, Slot::Caustics, Slot::Specular].contains(&slot);
         // What leaves one of the two is in the other.
         let specular = if slot == Slot::Direct { self.light_paths(Slot::Specular) } else { LightPaths::default() };
-        if specular.caustics == CausticPaths::Unmirrored {
+        if [CausticPaths::Unmirrored, CausticPaths::Mirrored].contains(&specular.caustics) {
             return specular;
         }
         let own = self.own_light_paths(slot, indirect);
         match own.mirrors {
+            // Of small lamps photons alone find what mirrors show then, and they know no limits.
+            Some(_) if self.mirrors_have_caustics() => {
+                LightPaths { caustics: CausticPaths::Mirrored, ..LightPaths::default() }
+            }
             // What mirrors show is as bright as what the method of the slot `diffuse` says of it.
             Some(_) => LightPaths { bounces: self.mirrored_bounces(), ..own },
             None => own,
         }
+    }
+
+    fn mirrors_have_caustics(&self) -> bool {
+        matches!(self.methods.filler(Slot::Caustics), Some(Filler::Method(method)) if method.lights_mirrored)
     }
 
     /// Scatterings between the light and what mirrors show, at most.
@@ -310,6 +318,10 @@ mod tests {
         assert_eq!(specular(&[]), (None, Some(8), true));
         assert_eq!(specular(&[("particles.bounces", "2"), ("trace.depth", "3")]), (Some(3), Some(3), true));
         let cubemap = of(Technique::Lightmaps).light_paths(Slot::Specular);
+        assert_eq!((cubemap.bounces, cubemap.caustics, cubemap.mirrors), (None, CausticPaths::Mirrored, None));
+        let mut uncaustic = of(Technique::Lightmaps);
+        uncaustic.methods.caustics = of(Technique::Particles).methods.caustics;
+        let cubemap = uncaustic.light_paths(Slot::Specular);
         assert_eq!((cubemap.bounces, cubemap.caustics, cubemap.mirrors), (None, CausticPaths::Unmirrored, Some(4)));
         // What mirrors show is lit directly alone where the method of the slot `diffuse` says nothing of it.
         let mut rsm = of(Technique::Rsm);

@@ -19,9 +19,12 @@ mod tiles;
 mod upsample;
 
 use self::options::{PhotonFootprint, PhotonGeometry, PhotonOptions, PhotonSplatting, PhotonTracing};
-use self::splat::{SplatInputs, splat};
+use self::splat::{SplatInputs, TOLERANCE, splat};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::light_views::Views;
+use crate::frame::mirrored::MirroredPoints;
+use crate::frame::photons::field::{Widths, light_mirrored};
+use crate::frame::photons::kept::keep;
 use crate::frame::photons::records::{ARRIVAL_BYTES, Arrivals, LARGEST_BUFFER, LandedPhotons, PhotonRays};
 use crate::frame::photons::turn::{Discs, Sending, Turn};
 use crate::frame::photons::ways::Ways;
@@ -32,6 +35,8 @@ use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
 use crate::slot::{CausticPaths, LightPaths, Slot};
 
+/// Of the passes that light what mirrors show.
+const MIRRORED: &str = "caustics/photons/mirrored";
 /// Of a photon where it lands (glsl/photon_splat/disc.glsl).
 const DISC_BYTES: u32 = 48;
 
@@ -47,6 +52,7 @@ impl Method for Photons {
     const NAME: &'static str = "photons";
     const SLOT: Slot = Slot::Caustics;
     type Options = PhotonOptions;
+    const LIGHTS_MIRRORED: bool = true;
 
     fn light_paths(options: &PhotonOptions) -> LightPaths {
         LightPaths { bounces: Some(options.bounces), caustics: CausticPaths::Specular, mirrors: None }
@@ -80,6 +86,9 @@ impl Method for Photons {
             "photon_splat/touch",
             "photon_splat/clear",
             "photon_splat/resolve",
+            "photons/keep",
+            "photons/field*",
+            "buckets/starts",
         ]);
         match options.splat {
             PhotonSplatting::Discs => shaders.push("photon_splat/discs"),
@@ -112,13 +121,14 @@ impl Method for Photons {
 
     fn declare(cx: &mut FrameCx<'_, '_>, options: &PhotonOptions) -> Result<Option<ImageRef>, Error> {
         let traced = trace_all(cx, options);
-        let splatted = SplatInputs {
-            buffer: cx.frame.surface,
-            options,
-            // Hits among triangles are on their surfaces.
-            length: if options.trace == PhotonTracing::Bvh { 0.0 } else { cx.frame.data.reach },
-            tiles_at_once: sums::TILES_AT_ONCE,
-        };
+        // Hits among triangles are on their surfaces.
+        let length = if options.trace == PhotonTracing::Bvh { 0.0 } else { cx.frame.data.reach };
+        if cx.frame.offers.get::<MirroredPoints>().is_some() {
+            let kept = keep(cx.graph, MIRRORED, &traced.landed);
+            let widths = Widths { radius: 0.0, scale: 1.0, tolerance: (length * TOLERANCE) as f32 };
+            light_mirrored(cx.graph, cx.frame, MIRRORED, kept, widths);
+        }
+        let splatted = SplatInputs { buffer: cx.frame.surface, options, length, tiles_at_once: sums::TILES_AT_ONCE };
         Ok(Some(splat(cx.graph, &splatted, &traced.landed)))
     }
 }

@@ -29,7 +29,7 @@ use crate::graph::bindings::ImageRef;
 use crate::graph::{ClearColor, Graph};
 
 /// What a photon may be off its surface, over the scene's length: its hit may come from lists of limited resolution.
-const TOLERANCE: f64 = 1e-3;
+pub(super) const TOLERANCE: f64 = 1e-3;
 
 /// What splatting takes.
 pub(crate) struct SplatInputs<'a> {

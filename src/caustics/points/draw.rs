@@ -5,9 +5,10 @@
 
 use ash::vk;
 
-use super::kept::{KeptPhotons, PIECE};
+use super::kept::PIECE;
 use super::options::{PointFilter, PointOptions, PointTiles};
 use crate::frame::gbuffer::GBuffer;
+use crate::frame::photons::kept::KeptPhotons;
 use crate::graph::bindings::{BufferRef, ImageRef, SampledImage, TexelBuffer};
 use crate::graph::{ClearColor, Graph};
 use crate::shaders::points::{
@@ -28,7 +29,7 @@ const HEAD_COUNT: usize = 3;
 const SOURCE_TEXELS: usize = 4;
 
 /// The radii of a photon's light over those of the ellipse that it stands for.
-const RADIUS_SCALE: f32 = 1.4;
+pub(super) const RADIUS_SCALE: f32 = 1.4;
 
 /// Sums of what photons leave at pixels.
 struct Sums {

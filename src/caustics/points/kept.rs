@@ -6,6 +6,7 @@
 use ash::vk;
 
 use super::options::PointOptions;
+use crate::frame::photons::kept::{KEPT_TEXELS, KeptPhotons};
 use crate::frame::photons::records::{Arrivals, LARGEST_BUFFER, LandedPhotons, PhotonRays};
 use crate::frame::photons::turn::{Discs, Sending, Turn};
 use crate::frame::photons::ways::Ways;
@@ -14,15 +15,13 @@ use crate::frame::rays::TracedScene;
 use crate::graph::bindings::BufferRef;
 use crate::graph::hash_of;
 use crate::method::FrameCx;
-use crate::shaders::points::{Keep, KeepPush};
+use crate::shaders::photons::{Keep, KeepPush};
 
 pub(super) const PIECE: &str = "caustics/points";
 
 const RECORDS: vk::Format = vk::Format::R32G32B32A32_UINT;
 const WORDS: vk::Format = vk::Format::R32_UINT;
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-/// Of a kept photon (glsl/points/kept.glsl).
-const TEXELS: usize = 3;
 /// The largest record of a place: that of a pixel on which it alone falls (glsl/points/source.glsl).
 const PLACE_BYTES: u32 = 64;
 
@@ -33,15 +32,6 @@ const DISCS: Discs = Discs { scale: 1.0, by_beams: true };
 pub(super) fn sent(options: &PointOptions) -> u32 {
     let most = LARGEST_BUFFER / PLACE_BYTES / options.bounces.max(1);
     options.photons.min(most / options.frames * options.frames)
-}
-
-/// Photons where they landed.
-#[derive(Clone, Copy)]
-pub(crate) struct KeptPhotons {
-    /// Three texels each.
-    pub(crate) photons: BufferRef<[u32; 4]>,
-    /// Places; some hold none.
-    pub(crate) count: u32,
 }
 
 /// What all turns share.
@@ -90,7 +80,7 @@ pub(super) fn keep(cx: &mut FrameCx<'_, '_>, scene: &TracedScene, options: &Poin
     let wanted: Vec<u64> = (0..frames).map(|turn| hash_of(&(identity, content, turn))).collect();
 
     let kept = KeptPhotons {
-        photons: graph.carried_buffer("points.photons", TEXELS * (turns.capacity() * frames) as usize),
+        photons: graph.carried_buffer("points.photons", KEPT_TEXELS * (turns.capacity() * frames) as usize),
         count: turns.capacity() * frames,
     };
     // Of each turn, how many of its photons were no numbers; its key says in what the turn was sent.

@@ -2,7 +2,7 @@
 //!
 //! 1. `kept.rs`: photons from the specular surfaces that lights see, through the scene's hierarchy to where they land; some of them are sent again in each frame where
 //!    something changed.
-//! 2. `draw.rs`: the points, and their filter in the tiles that they reach.
+//! 2. `draw.rs`: the points, and their filter in the tiles that they reach; `frame/photons/field.rs`: their light at what mirrors show.
 
 pub(crate) mod draw;
 pub(crate) mod kept;
@@ -10,6 +10,7 @@ pub(crate) mod options;
 
 use self::options::PointOptions;
 use crate::frame::light_views::Views;
+use crate::frame::photons::field::{Widths, light_mirrored};
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -22,6 +23,7 @@ impl Method for Points {
     const NAME: &'static str = "points";
     const SLOT: Slot = Slot::Caustics;
     type Options = PointOptions;
+    const LIGHTS_MIRRORED: bool = true;
 
     fn light_paths(options: &PointOptions) -> LightPaths {
         LightPaths { bounces: Some(options.bounces), caustics: CausticPaths::Specular, mirrors: None }
@@ -40,8 +42,9 @@ impl Method for Points {
             "photons/scatter",
             "photons/trace",
             "photons/land_traced",
+            "photons/keep",
         ];
-        [&choose[..], &send, &["points/*"]].concat()
+        [&choose[..], &send, &["photons/field*", "buckets/starts", "points/*"]].concat()
     }
 
     fn skip(options: &PointOptions, facts: &Facts) -> Option<&'static str> {
@@ -68,6 +71,8 @@ impl Method for Points {
     fn declare(cx: &mut FrameCx<'_, '_>, options: &PointOptions) -> Result<Option<ImageRef>, Error> {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let photons = kept::keep(cx, scene, options);
+        let widths = Widths { radius: options.radius as f32, scale: draw::RADIUS_SCALE, tolerance: 0.0 };
+        light_mirrored(cx.graph, cx.frame, "caustics/points/mirrored", photons, widths);
         Ok(Some(draw::draw(cx.graph, cx.frame.surface, options, photons)))
     }
 }

@@ -7,6 +7,8 @@
 pub(crate) mod bvh;
 pub(crate) mod choose;
 mod emit;
+pub(crate) mod field;
+pub(crate) mod kept;
 mod land;
 pub(crate) mod records;
 pub(crate) mod turn;

@@ -128,6 +128,7 @@ const CHANGES: &[(&str, Change)] = &[
     ("caustics of specular paths alone", |parts| parts.request.caustics = CausticPaths::Specular),
     ("nothing specular on the way", |parts| parts.request.caustics = CausticPaths::None),
     ("no caustics in mirrors", |parts| parts.request.caustics = CausticPaths::Unmirrored),
+    ("caustics in mirrors, as rays find them", |parts| parts.request.caustics = CausticPaths::Mirrored),
     ("no reflection", |parts| parts.request.mirrors = Some(0)),
     ("one reflection", |parts| parts.request.mirrors = Some(1)),
     ("one bounce", |parts| parts.request.bounces = Some(1)),

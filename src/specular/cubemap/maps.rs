@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::objects::Object;
 use super::options::CubemapOptions;
-use crate::frame::mirrored::{MirroredLight, MirroredList};
+use crate::frame::mirrored::MirroredList;
 use crate::frame::mirrored_light::Shining;
 use crate::frame::rays::TracedScene;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -93,24 +93,26 @@ pub(super) fn see(
     maps
 }
 
-/// Declares the passes that make one map of what its texels see; `diffuse`: what the first lists of it get.
+/// Declares the passes that make one map of what its texels see; `diffuse`, `caustics`: what its points get of these.
 pub(super) fn map(
     graph: &mut Graph<'_>,
     number: usize,
     seen: &Seen,
-    diffuse: Option<&MirroredLight>,
+    [diffuse, caustics]: [Option<BufferRef<[f32; 4]>>; 2],
     options: &CubemapOptions,
 ) -> Map {
     let side = options.resolution;
     let count = texels(side);
-    let irradiance = diffuse.map(|diffuse| diffuse.irradiance[number]);
+    let irradiance = |of: Option<BufferRef<[f32; 4]>>| of.map_or(TexelBuffer::absent(), |of| of.texels(FLOATS));
     let boxes = graph.buffer::<[f32; 4]>(&format!("cubemap.boxes.{number}"), texels_of_boxes(side) as usize);
     let pass = Resolve {
-        has_field: u32::from(irradiance.is_some()),
+        has_field: u32::from(diffuse.is_some()),
+        has_caustics: u32::from(caustics.is_some()),
         seen: seen.seen.texels(FLOATS),
         points: seen.list.points.texels(WORDS),
         light: seen.light.texels(FLOATS),
-        irradiance: irradiance.map_or(TexelBuffer::absent(), |irradiance| irradiance.texels(FLOATS)),
+        irradiance: irradiance(diffuse),
+        caustics: irradiance(caustics),
         boxes: boxes.start(),
         push: ResolvePush { texels: count },
     };

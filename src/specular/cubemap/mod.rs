@@ -12,10 +12,9 @@ mod maps;
 mod objects;
 pub(crate) mod options;
 
-use self::maps::Seen;
 use self::objects::Object;
 use self::options::CubemapOptions;
-use crate::frame::mirrored::{MirroredLight, MirroredPoints};
+use crate::frame::mirrored::{MirroredCaustics, MirroredLight, MirroredPoints, Seen};
 use crate::graph::bindings::ImageRef;
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
 use crate::scene::Facts;
@@ -60,7 +59,9 @@ impl Method for Cubemap {
             return;
         }
         let seen = maps::see(cx, scene, &objects, options);
-        cx.frame.offers.put(MirroredPoints { lists: seen.iter().map(|seen| seen.list).collect() });
+        cx.frame
+            .offers
+            .put(MirroredPoints { lists: seen.iter().map(|seen| seen.list).collect(), seen: Seen::default() });
         cx.frame.offers.put(Surroundings { objects, seen });
     }
 
@@ -72,7 +73,7 @@ impl Method for Cubemap {
 /// What was found before other methods declared their passes.
 struct Surroundings {
     objects: Vec<Object>,
-    seen: Vec<Seen>,
+    seen: Vec<maps::Seen>,
 }
 
 /// The slot, and what is behind it.
@@ -85,10 +86,15 @@ pub(crate) struct Made {
 /// Declares the passes that follow what other methods say of the light.
 pub(crate) fn cubemap(cx: &mut FrameCx<'_, '_>, options: &CubemapOptions) -> Option<Made> {
     let scene = cx.rays()?;
-    let (found, diffuse) = (cx.frame.offers.get::<Surroundings>()?, cx.frame.offers.get::<MirroredLight>());
-    let maps = found.seen.iter().enumerate();
-    let maps: Vec<_> =
-        maps.map(|(number, seen)| maps::map(cx.graph, number, seen, diffuse.as_deref(), options)).collect();
+    let offers = &cx.frame.offers;
+    let found = offers.get::<Surroundings>()?;
+    let (diffuse, caustics) = (offers.get::<MirroredLight>(), offers.get::<MirroredCaustics>());
+    let mut map = |(number, seen)| {
+        let diffuse = diffuse.as_ref().map(|diffuse| diffuse.irradiance[number]);
+        let caustics = caustics.as_ref().map(|caustics| caustics.irradiance[number]);
+        maps::map(cx.graph, number, seen, [diffuse, caustics], options)
+    };
+    let maps: Vec<_> = found.seen.iter().enumerate().map(&mut map).collect();
     let specular = apply::apply(cx, scene, &found.objects, &maps, options);
     Some(Made { specular, maps })
 }

@@ -2,7 +2,7 @@
 //!
 //! 1. `walk.rs`, before other methods declare their passes: rays from the surfaces of the picture list the points that mirrors and glass show; `frame/mirrored_light.rs`:
 //!    rays from the points to the lights.
-//! 2. A method of the slot `diffuse` says what diffuse light comes to these, if it does so (`frame/mirrored.rs`).
+//! 2. A method of the slot `diffuse` says what diffuse light comes to these, if it does so, and one of the slot `caustics` what caustics do (`frame/mirrored.rs`).
 //! 3. `light.rs`: the sum at each pixel.
 //!
 //! If it supersamples, `marks.rs` lists pixels whose centres do not stand for all of them; `supersample.rs` sends rays through these from the camera, whose points
@@ -15,7 +15,7 @@ mod supersample;
 mod walk;
 
 use self::options::TraceOptions;
-use crate::frame::mirrored::{MirroredLight, MirroredPoints};
+use crate::frame::mirrored::{MirroredCaustics, MirroredLight, MirroredPoints, Seen};
 use crate::frame::mirrored_light::Shining;
 use crate::graph::bindings::{BufferRef, ImageRef};
 use crate::method::{Error, FrameCx, Inputs, Method, Rays};
@@ -80,24 +80,29 @@ impl Method for Trace {
         let samples = if supersamples { supersample::sample(cx, scene, reflected, options) } else { Vec::new() };
         let lists = walked.iter().flat_map(|walked| &walked.bands).map(|band| band.list);
         let lists = lists.chain(samples.iter().map(|band| band.list)).collect();
-        cx.frame.offers.put(MirroredPoints { lists });
+        let shift = (cx.frame.data.origin - scene.origin).as_vec3();
+        let seen = Seen::by_pixels(cx.frame.camera, size, shift);
+        cx.frame.offers.put(MirroredPoints { lists, seen });
         cx.frame.offers.put(Traced { walked, light, samples });
     }
 
     fn declare(cx: &mut FrameCx<'_, '_>, _: &TraceOptions) -> Result<Option<ImageRef>, Error> {
         let offers = &cx.frame.offers;
         let Some(traced) = offers.get::<Traced>() else { return Ok(None) };
-        let (diffuse, graph) = (offers.get::<MirroredLight>(), &mut *cx.graph);
-        let walked = traced.walked.as_ref();
-        Ok(walked.map(|walked| light::resolve(graph, walked, &traced.light, diffuse.as_deref())))
+        let (diffuse, caustics) = (offers.get::<MirroredLight>(), offers.get::<MirroredCaustics>());
+        let indirect = light::Indirect { diffuse: diffuse.as_deref(), caustics: caustics.as_deref() };
+        let graph = &mut *cx.graph;
+        Ok(traced.walked.as_ref().map(|walked| light::resolve(graph, walked, &traced.light, &indirect)))
     }
 
     fn refine(cx: &mut FrameCx<'_, '_>, _: &TraceOptions, slots: &[(Slot, ImageRef)]) {
         let offers = &cx.frame.offers;
         let Some(traced) = offers.get::<Traced>() else { return };
-        let diffuse = offers.get::<MirroredLight>();
-        let of_samples = diffuse.as_ref().map(|diffuse| &diffuse.irradiance[traced.light.len()..]);
-        supersample::replace(cx, &traced.samples, of_samples, slots);
+        let (diffuse, caustics) = (offers.get::<MirroredLight>(), offers.get::<MirroredCaustics>());
+        let of_samples = traced.light.len()..;
+        let diffuse = diffuse.as_ref().map(|diffuse| &diffuse.irradiance[of_samples.clone()]);
+        let caustics = caustics.as_ref().map(|caustics| &caustics.irradiance[of_samples]);
+        supersample::replace(cx, &traced.samples, [diffuse, caustics], slots);
     }
 }
 

@@ -99,7 +99,7 @@ fn follow(
 pub(super) fn replace(
     cx: &mut FrameCx<'_, '_>,
     samples: &[Samples],
-    diffuse: Option<&[BufferRef<[f32; 4]>]>,
+    [diffuse, caustics]: [Option<&[BufferRef<[f32; 4]>]>; 2],
     slots: &[(Slot, ImageRef)],
 ) {
     for &(slot, image) in slots {
@@ -113,15 +113,18 @@ pub(super) fn replace(
         };
         for (band, samples) in samples.iter().enumerate() {
             let irradiance = diffuse.filter(|_| number >= 2).map(|diffuse| diffuse[band].texels(FLOATS));
+            let caustics = caustics.filter(|_| slot == Slot::Specular).map(|caustics| caustics[band].texels(FLOATS));
             let pass = Replace {
                 slot: number,
                 has_field: u32::from(irradiance.is_some()),
+                has_caustics: u32::from(caustics.is_some()),
                 marked: samples.marked.pixels.texels(WORD),
                 marked_count: samples.marked.arguments.texels(WORD),
                 sums: samples.sums.texels(WORDS),
                 points: samples.list.points.texels(WORDS),
                 light: samples.light.texels(FLOATS),
                 irradiance: irradiance.unwrap_or(TexelBuffer::absent()),
+                caustics: caustics.unwrap_or(TexelBuffer::absent()),
                 image: image.modify(),
             };
             let pass = cx.graph.pass(&format!("specular/trace/supersample/{slot}.{band}"), pass);

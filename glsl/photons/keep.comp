@@ -3,7 +3,7 @@
 #include "lib/finite.glsl"
 #include "photons/records.glsl"
 
-// Keeps one photon of a turn where it landed, or empties its place (points/kept.glsl). What is no number is left out and counted.
+// Keeps one photon of a turn where it landed, or empties its place (photons/kept.glsl). What is no number is left out and counted.
 
 layout(local_size_x = 64) in;
 

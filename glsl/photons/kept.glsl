@@ -5,8 +5,8 @@
 //   direction of the smaller radius, packed | its length in m | unused (2)
 //
 // A place without flux holds no photon.
-#ifndef POINTS_KEPT
-#define POINTS_KEPT
+#ifndef PHOTONS_KEPT
+#define PHOTONS_KEPT
 
 #include "lib/octahedral.glsl"
 #include "lib/vectors.glsl"
