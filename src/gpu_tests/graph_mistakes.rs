@@ -180,7 +180,9 @@ fn what_is_said_to_be_written_whole_is() {
     });
     let hemicubes = Settings::new(Technique::Direct, Preset::Draft).with(|settings| {
         settings.methods.set(Slot::Diffuse, "lightmaps").expect("a method");
-        settings.set("lightmaps.gather", "hemicube").expect("a choice");
+        for (key, value) in [("lightmaps.gather", "hemicube"), ("lightmaps.settle", "always")] {
+            settings.set(key, value).expect("a choice");
+        }
         (settings.lightmaps.count, settings.lightmaps.fragments) = (300, 5);
     });
     let frames = [
