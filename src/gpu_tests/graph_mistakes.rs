@@ -178,8 +178,16 @@ fn what_is_said_to_be_written_whole_is() {
         settings.methods.set(Slot::Specular, "cubemap").expect("a method");
         settings.cubemap.resolution = 32;
     });
+    let hemicubes = Settings::new(Technique::Direct, Preset::Draft).with(|settings| {
+        settings.methods.set(Slot::Diffuse, "lightmaps").expect("a method");
+        for (key, value) in [("lightmaps.gather", "hemicube"), ("lightmaps.settle", "always")] {
+            settings.set(key, value).expect("a choice");
+        }
+        (settings.lightmaps.count, settings.lightmaps.fragments) = (300, 5);
+    });
     let frames = [
         ("ring", points),
+        ("ring", hemicubes),
         ("lights", cubemap.clone()),
         ("cornell-glossy", cubemap),
         ("lights", supersampled),

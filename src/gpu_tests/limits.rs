@@ -16,6 +16,7 @@ const WAYS: &[Way] = &[
     (Technique::Rsm, "textured", &[]),
     (Technique::Particles, "cornell-point", &[]),
     (Technique::Lightmaps, "cornell-glossy", &[("lightmaps.count", "500"), ("cubemap.resolution", "32")]),
+    (Technique::Lightmaps, "ring", &[("lightmaps.count", "500"), ("lightmaps.gather", "hemicube")]),
     (Technique::Hybrid, "textured", &[("vpl.visibility", "traced"), ("vpl.bounces", "2"), ("photons.downscale", "2")]),
     (Technique::Hybrid, "ring", &[("vpl.visibility", "ism"), ("vpl.shading", "stencil"), ("photons.splat", "discs")]),
     (Technique::Hybrid, "ring", &[("photons.trace", "lines"), ("vpl.shading", "pixels")]),

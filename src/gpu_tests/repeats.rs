@@ -79,8 +79,12 @@ fn a_resource_that_is_gone_is_made_again() {
     mirrors.methods.set(Slot::Specular, "trace").expect("a method");
     let mut cubemap = small(Technique::Direct, &[("cubemap.resolution", "32")]);
     cubemap.methods.set(Slot::Specular, "cubemap").expect("a method");
+    let hemicube = [("lightmaps.gather", "hemicube"), ("lightmaps.settle", "always"), ("lightmaps.count", "200")];
+    let mut hemicubes = small(Technique::Direct, &hemicube);
+    hemicubes.methods.set(Slot::Diffuse, "lightmaps").expect("a method");
     let all = [
         ("cornell-glossy", cubemap),
+        ("textured", hemicubes),
         ("textured", small(Technique::Rsm, &[])),
         ("textured", small(Technique::Volumes, &[("volumes.lights", "16"), ("volumes.weights", "rays")])),
         ("textured", small(Technique::Volumes, &[("volumes.bounces", "3"), ("volumes.samples", "64")])),
