@@ -10,6 +10,9 @@ int second_place(usamplerBuffer places, uint particle) {
     return textureSize(places) / 2 + int(particle);
 }
 
+// Spacings of the closest particles from which on one is wide: it stands for four times as much surface.
+const float WIDE_SPACINGS = 2.0;
+
 // How far particles are apart around it, m.
 float spacing_of_particle(usamplerBuffer places, uint particle) {
     return uintBitsToFloat(texelFetch(places, second_place(places, particle)).z);

@@ -1,8 +1,10 @@
 #version 460
 #include "lib/prelude.glsl"
+#include "groups/particles.glsl"
 #include "lib/sobol.glsl"
 #include "particles/events.glsl"
 #include "particles/link.glsl"
+#include "particles/places.glsl"
 
 // One scattering step of one particle (Chang et al. 4.2.2): what it received in the step before, it reflects, and passes on along its links in equal shares.
 // The first step takes all n_s² links of the particles that lights reach, each further one a single link, drawn anew for each step:
@@ -29,6 +31,9 @@ layout(constant_id = 2) const uint SECOND_ENDS = 0u;
 
 // 1: behind the diffuse albedos are those of broad specular lobes.
 layout(constant_id = 3) const uint BROAD_LOBES = 0u;
+
+// 1: what wide particles pass on is the business of scatter_wide.comp.
+layout(constant_id = 7) const uint WIDE_APART = 0u;
 
 layout(set = 0, binding = 0) uniform samplerBuffer matter;
 layout(set = 0, binding = 1) uniform samplerBuffer emitted;            // W: what lights give; the share of it that is not the sky's
@@ -98,6 +103,7 @@ void main() {
         return;
     }
     float steps = texelFetch(scale, 0).x;
+    bool apart = WIDE_APART != 0u && spacing_of_particle(particle_places, particle) >= WIDE_SPACINGS * particle_spacing;
     vec3 albedo = texelFetch(matter, int(particle)).rgb;
     vec3 sum = vec3(0.0);
     if (FROM_LIGHTS != 0u) {
@@ -107,13 +113,17 @@ void main() {
             all += given.a * texelFetch(matter, int(push.particle_count + particle)).rgb;
         }
         sum = given.rgb;
-        pass_on(particle, all * given.rgb * (steps / float(push.link_count)), 0u, push.link_count);
+        if (!apart) {
+            pass_on(particle, all * given.rgb * (steps / float(push.link_count)), 0u, push.link_count);
+        }
     }
     if (FROM_STEPS != 0u) {
         vec3 flux = vec3(take_received(particle)) / max(steps, 1e-30);
         sum += flux;
         uint drawn = seed_of(seed_of(particle, 0xB0u), push.number) % push.link_count;
-        pass_on(particle, albedo * flux * steps, drawn, 1u);
+        if (!apart) {
+            pass_on(particle, albedo * flux * steps, drawn, 1u);
+        }
         total[particle] += vec4(sum, 0.0);
     } else {
         total[particle] = vec4(sum, 0.0);

@@ -51,7 +51,7 @@ fn count_of(scene: &TracedScene, options: &ParticlesOptions) -> u32 {
 }
 
 /// Why particles lie evenly, if they do.
-fn why_even(scene: &TracedScene, options: &ParticlesOptions) -> Option<&'static str> {
+pub(super) fn why_even(scene: &TracedScene, options: &ParticlesOptions) -> Option<&'static str> {
     if options.density == ParticleDensity::Even {
         Some("particles lie evenly")
     } else if options.receivers == ParticlesReceivers::Mesh {

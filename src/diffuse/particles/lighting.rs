@@ -1,7 +1,7 @@
 //! The lighting stage: lights give flux to particles, particles scatter it along their links. It stands while lights, geometry and materials do.
 
 use super::formats::{FLOATS4, WORD};
-use super::geometry::ParticleSpace;
+use super::geometry::{ParticleSpace, why_even};
 use super::links::lobes_of;
 use super::options::{ParticleTransport, ParticlesOptions};
 use crate::frame::rays::TracedScene;
@@ -9,7 +9,7 @@ use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, ReadWriteBuffer, TexelBuffer};
 use crate::shaders::particles::{
     Bounce, BouncePush, Emit, EmitPush, FluxScale, FluxScalePush, Glints, GlintsPush, Radiance, RadiancePush, Scatter,
-    ScatterPush,
+    ScatterPush, ScatterWide, ScatterWidePush,
 };
 
 /// What the stage leaves.
@@ -104,6 +104,8 @@ fn scatter(
         sums
     };
     let ring = (levels.late() > 0).then(|| sums(graph, "ring", ring_size));
+    // Links for gathering do not follow mirrors.
+    let wide_apart = why_even(scene, options).is_none() && !scene.facts.specular;
     let mut total = emitted;
     let mut received: Vec<BufferRef<u32>> = Vec::new();
     for number in 0..steps {
@@ -111,7 +113,10 @@ fn scatter(
         if number == 0 {
             total = graph.buffer::<[f32; 4]>("particles.total", particle_count as usize);
         }
+        let before = received.last().map_or(TexelBuffer::absent(), |received| received.texels(WORD));
         let pass = Scatter {
+            particles: space.group.clone(),
+            wide_apart: u32::from(wide_apart),
             from_lights: u32::from(number < levels.count()),
             from_steps: u32::from(number > 0),
             second_ends: u32::from(scene.facts.specular),
@@ -121,12 +126,33 @@ fn scatter(
             emitted: emitted.texels(FLOATS4),
             scatter_links: space.scatter_links.texels(WORD),
             scale: scale.texels(FLOATS4),
-            received: received.last().map_or(TexelBuffer::absent(), |received| received.texels(WORD)),
+            received: before.clone(),
             next: next.read_write(),
             total: if number == 0 { total.start_then_read() } else { total.read_write() },
             push: ScatterPush { particle_count, link_count, number, step_count: steps, ring: ring_size },
         };
         graph.pass(&format!("diffuse/particles/light/scatter.{number}"), pass).threads(threads);
+        for (place, chunk) in space.chunks.iter().enumerate().filter(|_| wide_apart) {
+            let pass = ScatterWide {
+                particles: space.group.clone(),
+                from_lights: u32::from(number == 0),
+                matter: space.matter.texels(FLOATS4),
+                emitted: emitted.texels(FLOATS4),
+                links: chunk.links.texels(WORD),
+                scale: scale.texels(FLOATS4),
+                received: before.clone(),
+                next: next.read_write(),
+                push: ScatterWidePush {
+                    first: chunk.first,
+                    count: chunk.count,
+                    link_count: options.gather * options.gather,
+                    scatter_count: link_count,
+                    number,
+                },
+            };
+            let pass = graph.pass(&format!("diffuse/particles/light/scatter-wide.{number}.{place}"), pass);
+            pass.threads([chunk.count, 1, 1]);
+        }
         if ring.is_none() {
             received.push(next);
         }

@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::super::options::{ParticleDensity, ParticlesOptions};
+use super::super::options::{ParticleDensity, ParticleTransport, ParticlesOptions};
 use super::moving::{add_block, counted, difference, shift_and_turn};
 use super::{against_paths, count, options, settings, stages};
 use crate::gpu_tests::scenes::{add_light, box_faces, closed_box, lambert, place, quad, request, view};
 use crate::gpu_tests::session::Session;
 use crate::renderer::{FrameRequest, Slot, Timing};
-use crate::scene::{LightKind, MaterialId, Primitive, Scene};
+use crate::scene::{LightKind, Material, MaterialId, Primitive, Scene};
 
 fn grey() -> MaterialId {
     MaterialId(0)
@@ -125,6 +125,35 @@ fn faint_light_beside_bright_light_is_all_passed_on() {
         frame.slots[&Slot::Diffuse].pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
     });
     assert!((beside / alone - 1.0).abs() < 0.03, "{}", beside / alone);
+}
+
+/// A sunlit ground stands for 64 times as much surface as what it lights in a room: where its few links end by chance, spots showed. Where something is specular they do.
+#[test]
+fn wide_particles_leave_no_spots() {
+    let session = Session::open();
+    let spots = |specular: bool| {
+        let mut scene = open_room();
+        scene.set_sky([0.0; 3]);
+        add_light(&mut scene, LightKind::Directional, DVec3::ZERO, DVec3::new(0.3, -1.0, 0.2), [3.0; 3]);
+        if specular {
+            let metal = Material { metallic: 1.0, roughness: 0.3, ..Material::default() };
+            let metal = scene.add_material(metal).expect("a sound material");
+            let corners = [[29.0, -1.0, 29.0], [29.0, -1.0, 29.01], [29.01, -1.0, 29.01], [29.01, -1.0, 29.0]];
+            place(&mut scene, vec![quad(corners, metal)], DAffine3::IDENTITY);
+        }
+        let [scattered, gathered] = [ParticleTransport::TwoWay, ParticleTransport::GatherOnly]
+            .map(|transport| stages(&session, &scene, &ParticlesOptions { transport, ..options(6000, 1) }));
+        let mut areas: Vec<f32> = scattered.matter.iter().map(|matter| matter[3]).collect();
+        areas.sort_by(f32::total_cmp);
+        let most = 4.0 * areas[areas.len() / 2];
+        let pairs = scattered.radiance.iter().zip(&gathered.radiance).zip(&scattered.matter);
+        let close = pairs.filter(|(_, matter)| matter[3] < most);
+        let squares: Vec<f64> = close.map(|((a, b), _)| f64::from(a[1] - b[1]).powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    let [without, with] = [false, true].map(spots);
+    println!("off by {without:.4} W/(m² sr), {with:.4} with few links");
+    assert!(without < 0.7 * with, "{without} of {with}");
 }
 
 /// How far apart particles are depends on all that is around: what moves makes everything anew, and the frame is a fresh one's.
