@@ -33,7 +33,7 @@ layout(constant_id = 4) const uint LISTED = 0u;
 layout(constant_id = 6) const uint TOGETHER = 0u;
 
 layout(set = 0, binding = 0) buffer LightBlock { float light[]; };
-layout(set = 0, binding = 1) buffer SentBlock { uint sent[]; };      // rays or cones
+layout(set = 0, binding = 1) buffer SentBlock { uint sent[]; };      // rays or cones, of each pass
 layout(set = 0, binding = 2) readonly buffer DueBlock { uint due[]; };  // volumes/carry.comp
 layout(set = 0, binding = 3) uniform samplerBuffer light_nodes;      // caches/light_nodes.glsl
 
@@ -45,6 +45,7 @@ layout(push_constant, scalar) uniform Push {
     uint adds;        // 1: to what the cache holds
     int group_count;  // that there is room for
     float aperture;   // the sine of half of it
+    uint number;      // of the pass
 } push;
 
 const uint NUMBERS = 4u * uint(TEXELS);
@@ -284,7 +285,7 @@ void light_cache() {
     }
     barrier();
     if (self == 0u && shared_sent > 0u) {
-        atomicAdd(sent[0], shared_sent);
+        atomicAdd(sent[push.number], shared_sent);
     }
 }
 

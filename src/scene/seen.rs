@@ -103,34 +103,3 @@ fn ray_of(view: &CameraView, size: [u32; 2], pixel: [u32; 2]) -> (DVec3, DVec3, 
     let eye = view.world.translation;
     if is_perspective(view) { (eye, across - back, area) } else { (eye + across - near * back, -back, area) }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Facts;
-
-    /// From within a closed box: what six views at right angles show is all of it. Not from its very middle, where rays would go along the diagonals of its walls.
-    #[test]
-    fn views_all_around_show_all_surfaces() {
-        let scene = Scene::open("cornell-empty").expect("a built-in scene");
-        assert!(matches!(scene.facts(), Facts { diffuse: true, .. }));
-        let bounds = scene.bounds().expect("a room");
-        let [x, y, z] = bounds.size().to_array();
-        let eye = bounds.center() + DVec3::new(0.11, 0.06, 0.07);
-        let ways = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
-        let projection =
-            Projection::Perspective { vertical_fov: std::f64::consts::FRAC_PI_2, aspect: None, near: 0.01 };
-        let area: f64 = ways
-            .into_iter()
-            .map(|way| {
-                let up = if way.y.abs() > 0.5 { DVec3::X } else { DVec3::Y };
-                let view = CameraView::look_at(eye, eye + way, up, projection);
-                let seen = scene.seen_surfaces(&view, [96, 96]);
-                assert!(seen.iter().all(|seen| seen.is_some_and(|seen| seen.albedo[1] > 0.01)));
-                seen.iter().flatten().map(|seen| seen.area).sum::<f64>()
-            })
-            .sum();
-        let expected = 2.0 * (x * y + y * z + z * x);
-        assert!((area / expected - 1.0).abs() < 5e-3, "{area} of {expected} m²");
-    }
-}

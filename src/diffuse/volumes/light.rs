@@ -15,16 +15,6 @@ use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 const LIGHT_STEPS: u32 = 2;
 const DRAW_STEPS: u32 = 64;
 
-/// Numbers that a cache holds (glsl/volumes/numbers.glsl).
-pub(super) fn numbers(options: &VolumesOptions) -> usize {
-    match (options.bands, options.chroma_bands()) {
-        (3, 3) => 28,
-        (3, 2) => 20,
-        (3, _) | (_, 2) => 12,
-        _ => 8,
-    }
-}
-
 /// Lights that passes of one name take.
 struct List<'l> {
     name: &'static str,
@@ -41,7 +31,7 @@ struct Inputs<'a> {
     rays: CacheRays,
     voxels: Option<&'a Voxels>,
     light: BufferRef<f32>,
-    /// Of rays or cones.
+    /// Of rays or cones, pass by pass.
     sent: BufferRef<u32>,
     /// Present if some caches alone are lit.
     due: Option<BufferRef<u32>>,
@@ -73,24 +63,25 @@ pub(super) fn light(
     };
     let (light, due) = match renewal {
         Some(Renewal { light, due }) => (light, Some(due)),
-        None => (cx.graph.buffer("volumes.light", numbers(options) * caches.capacity as usize), None),
+        None => (cx.graph.buffer("volumes.light", options.numbers() * caches.capacity as usize), None),
     };
     let graph = &mut *cx.graph;
     if listed.is_empty() {
         graph.fill_buffer("diffuse/volumes/clear-light", light, 0);
         return light;
     }
-    let sent = graph.buffer::<u32>("volumes.sent", 1);
+    let (sight, loop_steps) = (options.cache_settings().sight, graph.traits().loop_steps);
+    let of_list = |list: &'_ List<'_>| {
+        let steps = LIGHT_STEPS * list.lights.group_lights + if list.nodes.is_some() { DRAW_STEPS } else { 0 };
+        list.lights.chunks(sight, steps, loop_steps).collect::<Vec<Chunk>>()
+    };
+    let chunks: Vec<(&List<'_>, Chunk)> =
+        listed.iter().flat_map(|list| of_list(list).into_iter().map(move |chunk| (list, chunk))).collect();
+    let sent = graph.buffer::<u32>("volumes.sent", chunks.len());
     graph.fill_buffer("diffuse/volumes/clear-sent", sent, 0);
     let inputs = Inputs { caches, options, scene, rays, voxels: voxels.as_deref(), light, sent, due };
-    let sight = options.cache_settings().sight;
-    let mut adds = false;
-    for list in &listed {
-        let steps = LIGHT_STEPS * list.lights.group_lights + if list.nodes.is_some() { DRAW_STEPS } else { 0 };
-        for chunk in list.lights.chunks(sight, steps, graph.traits().loop_steps) {
-            pass(graph, &inputs, list, chunk, adds);
-            adds = true;
-        }
+    for (number, (list, chunk)) in chunks.into_iter().enumerate() {
+        pass(graph, &inputs, list, chunk, number as u32);
     }
     light
 }
@@ -104,7 +95,7 @@ fn now(cx: &FrameCx<'_, '_>, caches: &Caches, voxels: Option<&Voxels>, lists: &[
     hash_of(&(lights, voxels, scene, cx.graph.key_of(caches.positions)))
 }
 
-fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chunk, adds: bool) {
+fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chunk, number: u32) {
     let &Inputs { caches, options, rays, light, sent, due, .. } = inputs;
     let paper = options.val == VolumesVal::Paper;
     // The paper's lights come from all around: nobody looks for horizons then.
@@ -114,6 +105,7 @@ fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chun
     let (first_group, end_group, capacity) = (chunk.first_group, chunk.end_group, caches.capacity);
     let group_count = list.lights.group_count.cast_signed();
     let aperture = (options.aperture.to_radians() * 0.5).sin() as f32;
+    let adds = number > 0;
     let into = if adds || due.is_some() { light.read_write() } else { light.start_then_read() };
     let listed = due.map_or(ReadBuffer::absent(), BufferRef::read);
     let nodes = |nodes: BufferRef<[f32; 4]>| nodes.texels(ash::vk::Format::R32G32B32A32_SFLOAT);
@@ -134,9 +126,9 @@ fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chun
             paper: u32::from(paper),
             listed: is_listed,
             together,
-            push: LightConesPush { rays, first_group, end_group, capacity, adds, group_count, aperture },
+            push: LightConesPush { rays, first_group, end_group, capacity, adds, group_count, aperture, number },
         };
-        graph.pass(&name, pass).count("cones", sent, 0).threads_indirect(arguments, 0);
+        graph.pass(&name, pass).count("cones", sent, number as usize).threads_indirect(arguments, 0);
         return;
     }
     let traces = options.cache_settings().sight == CacheSight::Rays;
@@ -154,9 +146,9 @@ fn pass(graph: &mut Graph<'_>, inputs: &Inputs<'_>, list: &List<'_>, chunk: Chun
         listed: is_listed,
         together,
         traces: u32::from(traces),
-        push: LightPush { rays, first_group, end_group, capacity, adds, group_count, aperture },
+        push: LightPush { rays, first_group, end_group, capacity, adds, group_count, aperture, number },
     };
     let pass = graph.pass(&name, pass);
-    let pass = if traces { pass.count("rays", sent, 0) } else { pass };
+    let pass = if traces { pass.count("rays", sent, number as usize) } else { pass };
     pass.threads_indirect(arguments, 0);
 }

@@ -183,6 +183,16 @@ impl VolumesOptions {
         self.chroma.min(self.bands)
     }
 
+    /// Numbers that a cache holds (glsl/volumes/numbers.glsl).
+    pub(super) fn numbers(&self) -> usize {
+        match (self.bands, self.chroma_bands()) {
+            (3, 3) => 28,
+            (3, 2) => 20,
+            (3, _) | (_, 2) => 12,
+            _ => 8,
+        }
+    }
+
     /// The voxels that cones pass through.
     pub(super) fn voxel_settings(&self) -> VoxelSettings {
         VoxelSettings {

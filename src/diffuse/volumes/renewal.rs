@@ -3,7 +3,6 @@
 
 use ash::vk;
 
-use super::light::numbers;
 use super::options::VolumesOptions;
 use crate::frame::caches::Caches;
 use crate::graph::bindings::BufferRef;
@@ -47,7 +46,7 @@ pub(super) fn renewal(cx: &mut FrameCx<'_, '_>, caches: &Caches, now: u64, optio
     let words = options.cascades as usize * (options.resolution as usize).pow(3);
     let table = graph.history_buffer::<u32>("volumes.table", words, depends, advance);
     let places = graph.history_buffer::<[f32; 4]>("volumes.places", capacity, depends, advance);
-    let light = graph.history_buffer::<f32>("volumes.kept", numbers(options) * capacity, depends, advance);
+    let light = graph.history_buffer::<f32>("volumes.kept", options.numbers() * capacity, depends, advance);
     // Without a past all are due, and in the next frame none: both frames declare the same work.
     let lights_all = light.age == 0 || table.age == 0 || places.age == 0;
     if lights_all {

@@ -15,9 +15,9 @@ use crate::gpu_tests::session::Session;
 use crate::renderer::{Frame, FrameRequest, Preset, Settings, Slot, Technique, Timing};
 use crate::scene::{LightId, LightKind, Material, Scene};
 
-/// What a pass counted, in all its parts.
+/// What passes whose names begin so counted.
 fn counted(frame: &Frame, pass: &str, name: &str) -> u64 {
-    let rows = frame.timings.passes.iter().filter(|row| row.skipped.is_none() && row.full_name() == pass);
+    let rows = frame.timings.passes.iter().filter(|row| row.skipped.is_none() && row.full_name().starts_with(pass));
     rows.filter_map(|row| row.work.get(name)).sum()
 }
 
