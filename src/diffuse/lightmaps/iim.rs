@@ -21,12 +21,12 @@ pub(super) struct Chosen {
 pub(super) fn all(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    aim: BufferRef<[f32; 4]>,
+    (aim, maps): (BufferRef<[f32; 4]>, u32),
     options: &LightmapsOptions,
 ) -> BufferRef<[f32; 4]> {
-    let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count());
+    let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count() * maps as usize);
     graph.fill_buffer("diffuse/lightmaps/iim/clear", gathered, 0);
-    gather(graph, texels, (aim, gathered), Chosen { head: texels.head, list: texels.used }, options);
+    gather(graph, texels, (aim, gathered, maps), Chosen { head: texels.head, list: texels.used }, options);
     gathered
 }
 
@@ -34,7 +34,7 @@ pub(super) fn all(
 pub(super) fn gather(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    (aim, gathered): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    (aim, gathered, maps): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>, u32),
     chosen: Chosen,
     options: &LightmapsOptions,
 ) {
@@ -48,7 +48,8 @@ pub(super) fn gather(
             list: chosen.list.texels(WORD),
             head: chosen.head.texels(WORD),
             gathered: gathered.read_write(),
-            push: GatherPush { first, end, count: options.rays },
+            maps,
+            push: GatherPush { first, end, count: options.rays, texel_count: texels.map.count },
         };
         let pass = graph.pass(&format!("diffuse/lightmaps/iim/gather.{number}"), pass);
         let pass = pass.note("rays a texel", u64::from(end - first)).count("texels", chosen.head, 3);
