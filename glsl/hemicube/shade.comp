@@ -25,6 +25,7 @@ layout(push_constant, scalar) uniform Push {
     uint columns;     // tiles along the atlas
     uint side;        // fragments
     float plane;      // a
+    uint first_of_map;  // element of the AIM
 } push;
 
 // Rasterisers move corners: a fragment's middle may lie beside the triangle that it shows, and stands for the point of it that is nearest then.
@@ -54,7 +55,11 @@ void main() {
         View view = view_of_texel(texelFetch(list, int(push.first + number)).x);
         vec3 direction = direction_through(view, middle_of_fragment(place, push.side, push.plane));
         if (dot(direction, view.face) > 0.0) {
-            radiance = radiance_of_hit(hit_of(triangle, view.origin, direction), view.origin, direction, received);
+            vec3 lobe;
+            Cell cell;
+            if (sends_light_back(hit_of(triangle, view.origin, direction), view.origin, direction, lobe, cell)) {
+                radiance = lobe * light_of(cell, received, push.first_of_map);
+            }
         }
     }
     light[gl_GlobalInvocationID.x] = vec4(radiance, 0.0);

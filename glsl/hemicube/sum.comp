@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer list;   // texels to gather
 layout(set = 0, binding = 1) uniform usamplerBuffer head;   // word 3: how many
 layout(set = 0, binding = 2) uniform samplerBuffer light;   // by view, row by row
-layout(set = 0, binding = 3) buffer Gathered { vec4 gathered[]; };  // by texel
+layout(set = 0, binding = 3) buffer Gathered { vec4 gathered[]; };  // by map and texel; w: rounds, of which there is one
 
 layout(push_constant, scalar) uniform Push {
     uint first;       // place in the list of this batch's first view
@@ -21,6 +21,7 @@ layout(push_constant, scalar) uniform Push {
     uint side;        // fragments
     float plane;      // a
     float covered;    // ΣF
+    uint first_of_map;  // element of `gathered`
 } push;
 
 void main() {
@@ -35,5 +36,5 @@ void main() {
             sum += weight_of(uvec2(x, y), push.side, push.plane) * texelFetch(light, int(place)).rgb;
         }
     }
-    gathered[texelFetch(list, int(push.first + number)).x] = vec4(sum * (PI / push.covered), 1.0);
+    gathered[push.first_of_map + texelFetch(list, int(push.first + number)).x] = vec4(sum * (PI / push.covered), 1.0);
 }

@@ -2,7 +2,7 @@
 #include "lib/prelude.glsl"
 #include "lightmaps/changes.glsl"
 
-// What one texel shows moves towards what it gathered. Until it is gathered anew, what comes along its links says what changed since: it is made less by the share
+// What one texel shows of one map moves towards what it gathered. Until it is gathered anew, what comes along its links says what changed since: it is made less by the share
 // that is gone, or more by what came. So a light that is switched on arrives everywhere at once, coarsely, and one that is dimmed at its very share.
 
 layout(local_size_x = 64) in;
@@ -16,6 +16,8 @@ layout(set = 0, binding = 4) buffer Shown { vec4 shown[]; };
 layout(push_constant, scalar) uniform Push {
     uint used_count;
     float share;  // of the way
+    uint texel_count;
+    uint maps;
 } push;
 
 // Share of a texel's light that is no step any more.
@@ -23,10 +25,11 @@ const float LEAST = 1.0 / 1024.0;
 
 void main() {
     uint place = gl_GlobalInvocationID.x;
-    if (place >= push.used_count) {
+    if (place >= push.maps * push.used_count) {
         return;
     }
-    int number = int(texelFetch(used, int(place)).x);
+    uint map = place / push.used_count;
+    int number = int(map * push.texel_count + texelFetch(used, int(place % push.used_count)).x);
     vec3 light = texelFetch(gathered, number).rgb;
     vec3 after = texelFetch(now, number).rgb;
     vec3 before = texelFetch(then, number).rgb;

@@ -3,7 +3,7 @@
 #include "lib/vectors.glsl"
 #include "lightmaps/links.glsl"
 
-// One more bounce of the approximated illumination map (AIM): what one texel receives, of the lights and along its links,
+// One more bounce of the approximated illumination map (AIM): what one texel receives in one of the maps, of the lights and along its links,
 //
 //   E(x) = E_direct(x) + E_arrival(x) + E_caustic(x) + 1/N Σ_l w_l·E(y_l)        W/m²
 //
@@ -26,16 +26,22 @@ layout(push_constant, scalar) uniform Push {
     uint texel_count;
     uint link_count;
     vec3 sky;  // W/(m²·sr)
+    uint maps;
+    uint rest;  // the map that has what comes of emissive surfaces and the sky, the last one; `maps`: there is none
 } push;
 
 void main() {
-    uint number = gl_GlobalInvocationID.x;
-    if (number >= push.texel_count) {
+    uint place = gl_GlobalInvocationID.x;
+    if (place >= push.maps * push.texel_count) {
         return;
     }
-    vec3 irradiance = texelFetch(direct, int(number)).rgb;
-    irradiance += texelFetch(arrivals, 2 * int(number)).rgb + push.sky * texelFetch(arrivals, 2 * int(number) + 1).rgb;
-    irradiance += light_along_links(links, push.texel_count, push.link_count, number, before);
-    irradiance += HAS_CAUSTICS != 0u ? texelFetch(caustics, int(number)).rgb : vec3(0.0);
-    after[number] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
+    uint number = place % push.texel_count;
+    uint map = place / push.texel_count;
+    vec3 irradiance = texelFetch(direct, int(place)).rgb;
+    if (map == push.rest) {
+        irradiance += texelFetch(arrivals, 2 * int(number)).rgb + push.sky * texelFetch(arrivals, 2 * int(number) + 1).rgb;
+    }
+    irradiance += light_along_links(links, push.texel_count, push.link_count, number, before, map);
+    irradiance += HAS_CAUSTICS != 0u ? texelFetch(caustics, int(place)).rgb : vec3(0.0);
+    after[place] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
 }

@@ -17,6 +17,8 @@
 //
 //   E = Σ_punctual E⊥·cosθ·V + Σ_k L_e(y_k)·cosθ·V/(K·p_k)·w_k + π/M Σ_m L(ω_m)·w_m
 //
+// Light that has a map of its own goes into that one; all else into the rest's, behind those.
+//
 // y_k: K points of emissive surfaces drawn by power with density p_k (1/sr, seen from the texel); ω_m: M directions by the cosine, which find emissive surfaces too,
 // and the sky. w: the power heuristic between the two.
 
@@ -32,9 +34,15 @@ layout(push_constant, scalar) uniform Push {
     uint direction_count;  // M, 0 where nothing is emissive and no sky shines
     float density_scale;
     vec3 sky;              // W/(m²·sr)
+    uint own_maps;         // lights that have one, the first ones
+    uint rest;             // 1: there is a map of the rest
 } push;
 
 const uint STREAM = 0xD17EC7u;
+
+void keep(uint number, uint map, vec3 irradiance) {
+    direct[map * push.texel_count + number] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
+}
 
 // One light, or point of an emissive surface: what comes of it where nothing is between, and the way there.
 struct Lamp {
@@ -116,7 +124,11 @@ void main() {
     }
     LightTexel texel = load_light_texel(number);
     vec3 irradiance = vec3(0.0);
-    if ((texelFetch(lightmap_flags, int(number)).x & TEXEL_VALID) != 0u) {
+    bool valid = (texelFetch(lightmap_flags, int(number)).x & TEXEL_VALID) != 0u;
+    [[dont_unroll]] for (uint map = 0u; map < push.own_maps && !valid; ++map) {
+        keep(number, map, vec3(0.0));
+    }
+    if (valid) {
         vec3 origin = offset_ray_origin(texel.position, texel.face);
         uint seed = seed_of(number, STREAM);
         uint punctual_rays = 4u * push.light_count;
@@ -133,6 +145,10 @@ void main() {
                 && !is_occluded(start, lamp.way, lamp.end)) {
                 irradiance += weight * lamp.irradiance;
             }
+            if (i < 4u * push.own_maps && (i & 3u) == 3u) {
+                keep(number, i >> 2, irradiance);
+                irradiance = vec3(0.0);
+            }
         }
         Frame frame = frame_around(texel.normal);
         vec3 found = vec3(0.0);
@@ -143,5 +159,7 @@ void main() {
         }
         irradiance += found * (PI / max(float(push.direction_count), 1.0));
     }
-    direct[number] = vec4(is_finite(irradiance) ? irradiance : vec3(0.0), 1.0);
+    if (push.rest != 0u) {
+        keep(number, push.own_maps, irradiance);
+    }
 }

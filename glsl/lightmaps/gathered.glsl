@@ -6,18 +6,18 @@
 #include "lib/hit_albedo.glsl"
 #include "lightmaps/lookup.glsl"
 
-// L = (ρ/π)·E_AIM(y), W/(m²·sr).
-vec3 radiance_of_hit(Hit hit, vec3 origin, vec3 direction, samplerBuffer received) {
+// Whether there is such a lobe: its albedo over π, and the texels around, so that L = (ρ/π)·E_AIM(y), W/(m²·sr), is `lobe` times their light.
+bool sends_light_back(Hit hit, vec3 origin, vec3 direction, out vec3 lobe, out Cell cell) {
     Triangle triangle = load_triangle(triangles, hit.triangle);
-    vec3 albedo = albedo_of_hit(triangle, hit);
-    if (max3(albedo) <= 0.0) {
-        return vec3(0.0);
+    lobe = INVERSE_PI * albedo_of_hit(triangle, hit);
+    if (max3(lobe) <= 0.0) {
+        return false;
     }
     vec3 face = front_normal(triangle);
     bool back = dot(face, direction) > 0.0;
     vec3 position = point_of_hit(triangle, hit.barycentric, face, origin, hit.distance * direction);
-    Cell cell = texels_at(hit.triangle, hit.barycentric, back, position, back ? -face : face);
-    return albedo * INVERSE_PI * light_of(cell, received);
+    cell = texels_at(hit.triangle, hit.barycentric, back, position, back ? -face : face);
+    return true;
 }
 
 #endif

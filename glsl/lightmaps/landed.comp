@@ -13,9 +13,12 @@ layout(constant_id = 0) const uint LISTS = 0u;
 layout(set = 0, binding = 0) uniform usamplerBuffer records;
 layout(set = 0, binding = 1) uniform usamplerBuffer starts;      // of each texel's list
 layout(set = 0, binding = 2) buffer Counts { uint counts[]; };   // so far
-layout(set = 0, binding = 3) buffer Hits { uvec4 hits[]; };      // two texels each
+layout(set = 0, binding = 3) buffer Hits { uvec4 hits[]; };      // two texels each; in the last word the light
 
-layout(push_constant, scalar) uniform Push { uint photon_count; } push;
+layout(push_constant, scalar) uniform Push {
+    uint photon_count;
+    uint photons_a_light;
+} push;
 
 void main() {
     uint photon = gl_GlobalInvocationID.x;
@@ -33,7 +36,7 @@ void main() {
             if (LISTS != 0u) {
                 uint hit = 2u * (texelFetch(starts, int(texel)).x + place);
                 hits[hit] = texelFetch(records, int(record));
-                hits[hit + 1u] = texelFetch(records, int(record) + 1);
+                hits[hit + 1u] = uvec4(texelFetch(records, int(record) + 1).xyz, photon / push.photons_a_light);
             }
         }
     }

@@ -18,13 +18,13 @@ vec3 unpack_share(uint bits) {
     return vec3(steps) * exp2(float(int(bits >> 27) - 24));
 }
 
-// What comes along the links of a texel, 1/N Σ_l w_l·E(y_l), W/m². Link i of all texels lies after link i − 1 of all.
-vec3 light_along_links(usamplerBuffer links, uint texel_count, uint link_count, uint number, samplerBuffer light) {
+// What comes along the links of a texel, 1/N Σ_l w_l·E(y_l), W/m². Link i of all texels lies after link i − 1 of all. `map`: of the maps of light that lie one behind the other.
+vec3 light_along_links(usamplerBuffer links, uint texel_count, uint link_count, uint number, samplerBuffer light, uint map) {
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (uint i = 0u; i < link_count; ++i) {
         uvec2 link = texelFetch(links, int(i * texel_count + number)).xy;
         if (link.x != NO_TEXEL) {
-            sum += unpack_share(link.y) * texelFetch(light, int(link.x)).rgb;
+            sum += unpack_share(link.y) * texelFetch(light, int(map * texel_count + link.x)).rgb;
         }
     }
     return sum / float(link_count);

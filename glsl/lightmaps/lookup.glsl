@@ -68,11 +68,11 @@ Cell texels_at(uint triangle, vec2 place, bool back, vec3 position, vec3 face) {
     return total > 0.0 ? Cell(cell.texels, weights / total) : NO_CELL;
 }
 
-// What they hold.
-vec3 light_of(Cell cell, samplerBuffer light) {
+// What they hold; `first`: where their map begins.
+vec3 light_of(Cell cell, samplerBuffer light, uint first) {
     vec3 sum = vec3(0.0);
     for (int corner = 0; corner < 4; ++corner) {
-        sum += cell.weights[corner] * texelFetch(light, int(cell.texels[corner])).rgb;
+        sum += cell.weights[corner] * texelFetch(light, int(first + cell.texels[corner])).rgb;
     }
     return sum;
 }

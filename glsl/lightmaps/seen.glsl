@@ -17,7 +17,7 @@ vec3 seen_irradiance(vec3 position, vec3 normal, vec3 to_viewer, float distance,
     }
     vec3 face = front_normal(load_triangle(triangles, hit.triangle));
     bool back = dot(face, normal) < BACK_COSINE;
-    return light_of(texels_at(hit.triangle, hit.barycentric, back, position, back ? -face : face), light);
+    return light_of(texels_at(hit.triangle, hit.barycentric, back, position, back ? -face : face), light, 0u);
 }
 
 #endif

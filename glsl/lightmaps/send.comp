@@ -12,12 +12,15 @@
 #include "lib/sobol.glsl"
 #include "lightmaps/charts.glsl"
 #include "lightmaps/photons.glsl"
+#include "lightmaps/rounds.glsl"
 
 // One photon (Larsen & Christensen 2004, section 2), from its light along its scatterings, of any lobe. Its directions are fixed: the square of directions of a light is
 // cut into as many cells of equal area as it has groups, in which photons are Owen-scrambled Sobol' points. So a group's photons go the same way.
 //
 // PROBES: one photon of each group goes its way again; if it meets another surface or another point of it than it did, its group is stale. Else all photons of stale
 // groups leave a new path, and note which surfaces had some of the old one or have some of the new one.
+//
+// A group that is sent again while nothing changed goes on along its points and its numbers: another round.
 //
 // CAUSTICS: what rays from texels do not find is left alone, the light of lamps without area that comes by specular lobes only, L S⁺ D.
 
@@ -29,10 +32,13 @@ layout(constant_id = 1) const uint FAR_SURFACES = 0u;
 
 // 1: only what specular lobes alone scattered lands, and goes on.
 layout(constant_id = 2) const uint CAUSTICS = 0u;
+// 1: there are several rounds, and what is known of all of them is noted.
+layout(constant_id = 3) const uint ROUNDS = 0u;
 
 layout(set = 0, binding = 0) buffer Records { uvec4 records[]; };
 layout(set = 0, binding = 1) buffer Stale { uint stale[]; };      // by group
 layout(set = 0, binding = 2) buffer Touched { uint touched[]; };  // 1, by surface and side; behind all: photons sent, rays
+layout(set = 0, binding = 3) buffer Past { uint past[]; };        // rounds.glsl
 
 layout(push_constant, scalar) uniform Push {
     uint group_count;
@@ -47,6 +53,7 @@ layout(push_constant, scalar) uniform Push {
     float radius;         // of the reach, m
     vec3 middle;
     float slack;          // m: as far a point may be off another one and be the same
+    uint round;           // that is sent
 } push;
 
 const uint STREAMS = 0x9407075u;
@@ -65,12 +72,18 @@ vec2 in_cell(uint cell, vec2 random) {
     return vec2((float(first) + float(columns) * random.x) / float(push.groups_a_light), (float(cell - first) + random.y) / float(columns));
 }
 
-Start start_of(uint photon) {
+// A sample of the round, of so many in each.
+uint in_round(uint number, uint count, uint round) {
+    return round * count + number;
+}
+
+Start start_of(uint photon, uint round) {
     uint number = photon / PHOTONS_A_GROUP;
     uint own = photon % PHOTONS_A_GROUP;
     uint light = number / push.groups_a_light;
-    vec4 random = sobol_sample(sobol, own, seed_of(STREAMS, number));
-    vec4 more = sobol_sample(sobol, own, seed_of(STREAMS + 1u, number));
+    uint point = in_round(own, PHOTONS_A_GROUP, round);
+    vec4 random = sobol_sample(sobol, point, seed_of(STREAMS, number));
+    vec4 more = sobol_sample(sobol, point, seed_of(STREAMS + 1u, number));
     vec2 place = in_cell(number % push.groups_a_light, random.xy);
     float photons = float(push.groups_a_light * PHOTONS_A_GROUP);
     Reach reach = Reach(push.middle, push.radius, FAR_SURFACES != 0u);
@@ -89,10 +102,27 @@ bool differs(uint record, vec3 position, uint texel) {
     return records[record + 1u].w != 0u || records[record].w != texel || dot(way, way) > push.slack * push.slack;
 }
 
-// The surface of a texel has other photons than it had.
-void touch(uint texel) {
+// The surface of a texel has other photons than it had, or has photons of these lights.
+void touch(uint texel, uint lights) {
     if (texel != NO_TEXEL) {
-        atomicMax(touched[texelFetch(lightmap_texels, 2 * int(texel) + 1).w], 1u);
+        uint side = texelFetch(lightmap_texels, 2 * int(texel) + 1).w;
+        atomicMax(touched[side], 1u);
+        if (ROUNDS != 0u && (past[side] & lights) != lights) {
+            atomicOr(past[side], lights);
+        }
+    }
+}
+
+// A light's paths have a point there.
+void note_point(uint light, vec3 position) {
+    if (PROBES == 0u && ROUNDS != 0u) {
+        uint first = box_of_light(push.surface_count, light);
+        [[dont_unroll]] for (uint word = 0u; word < 6u; ++word) {
+            float value = word < 3u ? position[word] : -position[word - 3u];
+            if (past[first + word] < ordered(value)) {
+                atomicMax(past[first + word], ordered(value));
+            }
+        }
     }
 }
 
@@ -105,8 +135,9 @@ uint texel_at(Hit hit, bool back) {
 }
 
 // Notes that a path goes on into the open.
-void note_way_out(uint record, vec3 origin, vec3 direction) {
+void note_way_out(uint record, uint light, vec3 origin, vec3 direction) {
     if (PROBES == 0u) {
+        note_point(light, origin + 1e18 * direction);
         records[record] = uvec4(floatBitsToUint(origin + push.radius * direction), NO_TEXEL);
         records[record + 1u].w = PATH_LEFT;
     }
@@ -114,7 +145,16 @@ void note_way_out(uint record, vec3 origin, vec3 direction) {
 
 // Returns whether the path is another one than it was.
 bool go(uint photon) {
-    Start start = start_of(photon);
+    uint group = photon / PHOTONS_A_GROUP;
+    uint light = group / push.groups_a_light;
+    uint own_round = round_of_group(push.surface_count, push.group_count / push.groups_a_light, group);
+    uint round = push.round;
+    if (ROUNDS != 0u && PROBES != 0u) {
+        round = past[own_round];
+    } else if (ROUNDS != 0u && photon % PHOTONS_A_GROUP == 0u) {
+        past[own_round] = round;
+    }
+    Start start = start_of(photon, round);
     vec3 origin = start.origin;
     vec3 direction = start.direction;
     vec3 flux = start.flux;
@@ -122,11 +162,12 @@ bool go(uint photon) {
         [[dont_unroll]] for (uint event = 0u; event < RECORDS_A_PHOTON; ++event) {
             uint record = record_of(photon, event);
             if (records[record + 1u].w == 0u && event > 0u) {
-                touch(records[record].w);
+                touch(records[record].w, 0u);
             }
             records[record] = uvec4(floatBitsToUint(start.origin), NO_TEXEL);
             records[record + 1u] = uvec4(floatBitsToUint(start.flux), event > 0u ? PATH_ENDED : 0u);
         }
+        note_point(light, start.origin);
     }
     uint rays = 0u;
     uint event = 1u;
@@ -135,12 +176,12 @@ bool go(uint photon) {
         Hit hit = closest_hit(origin, direction, 3e38);
         ++rays;
         if (hit.triangle == NO_TRIANGLE) {
-            note_way_out(record_of(photon, event), origin, direction);
+            note_way_out(record_of(photon, event), light, origin, direction);
             break;
         }
         HitVertex vertex = vertex_of_hit(load_triangle(triangles, hit.triangle), hit, origin, direction, Footprint(vec4(0.0), vec4(0.0)));
         if (vertex.unlit) {
-            note_way_out(record_of(photon, event), origin, direction);
+            note_way_out(record_of(photon, event), light, origin, direction);
             break;
         }
         flux *= vertex.transmittance * (event == 1u ? range_window(hit.distance, start.range) : 1.0);
@@ -159,9 +200,11 @@ bool go(uint photon) {
         } else {
             records[record] = uvec4(floatBitsToUint(vertex.position), texel);
             records[record + 1u] = uvec4(floatBitsToUint(received), 0u);
-            touch(texel);
+            touch(texel, bit_of_light(light));
+            note_point(light, vertex.position);
         }
-        vec4 random = sobol_sample(sobol, photon, STREAMS + 2u + event);
+        uint point = in_round(photon, push.group_count * PHOTONS_A_GROUP, round);
+        vec4 random = sobol_sample(sobol, point, STREAMS + 2u + event);
         viewer = normalize(vec3(viewer.xy, max(viewer.z, 1e-4)));
         LobeSample drawn = sample_lobes(vertex.matter, viewer, random.x, random.yz);
         direction = to_world(frame, drawn.direction);

@@ -107,7 +107,10 @@ pub fn bake(
     hear(Stage::Light);
     let settings = Settings::new(Technique::Direct, Preset::Default).with(|settings| {
         settings.methods.diffuse = DiffuseMethod::Lightmaps;
-        settings.lightmaps = lightmaps.clone().with(|options| options.settle = LightmapsSettle::Always);
+        settings.lightmaps = lightmaps.clone().with(|options| {
+            options.settle = LightmapsSettle::Always;
+            options.per_light = 0;
+        });
     });
     let mut packed = None;
     let found = Renderer::new(context, settings)?.surface_light(scene, detail, |map| {

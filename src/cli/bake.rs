@@ -18,10 +18,12 @@ use super::scene_args::SourceArgs;
 use super::values::{self, Setting};
 
 /// Settings of lightmaps that tell how light is renewed or shown, or are for photons alone.
-const WITHOUT_EFFECT: [&str; 6] = [
+const WITHOUT_EFFECT: [&str; 8] = [
     "lightmaps.settle",
     "lightmaps.show",
     "lightmaps.texels",
+    "lightmaps.rounds",
+    "lightmaps.per_light",
     "lightmaps.blend",
     "lightmaps.nearest",
     "lightmaps.invalidate",
@@ -108,7 +110,7 @@ fn settings(args: &BakeArgs) -> Result<Settings> {
         if WITHOUT_EFFECT.contains(&key.as_str()) {
             bail!(WrongUsage {
                 subcommand: "bake",
-                message: "baked light is settled light by rays: lightmaps.settle, show, texels, blend, nearest and invalidate change nothing of it"
+                message: "baked light is settled light by rays: lightmaps.settle, show, texels, rounds, per_light, blend, nearest and invalidate change nothing of it"
             });
         }
         settings.set(key, value)?;

@@ -21,10 +21,11 @@ fn metal(color: [f32; 3], roughness: f32) -> Material {
     Material { base_color: [red, green, blue, 1.0], metallic: 1.0, roughness, ..Material::default() }
 }
 
-/// The technique with small maps of diffuse light.
+/// The technique with small maps of diffuse light, which stand after one frame.
 fn settings(changes: &[(&str, &str)]) -> Settings {
-    let small = [("lightmaps.count", "3000"), ("lightmaps.rays", "128"), ("cubemap.light_samples", "32")];
-    settings_of(Technique::Lightmaps, &small.iter().chain(changes).copied().collect::<Vec<_>>())
+    let diffuse = [("lightmaps.count", "3000"), ("lightmaps.rays", "128"), ("lightmaps.rounds", "1")];
+    let small = diffuse.iter().chain(&[("cubemap.light_samples", "32")]);
+    settings_of(Technique::Lightmaps, &small.chain(changes).copied().collect::<Vec<_>>())
 }
 
 /// The same without diffuse light.

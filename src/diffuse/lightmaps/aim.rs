@@ -1,6 +1,7 @@
 //! The approximated illumination map: what texels receive of the lights, and along links of each other.
 
 use super::formats::{FLOATS4, WORDS2};
+use super::lamps::Lamps;
 use super::options::LightmapsOptions;
 use super::texels::LightTexels;
 use crate::frame::rays::{Lightmap, TracedScene};
@@ -19,6 +20,9 @@ pub(super) struct Approximated {
     /// Bounces along links.
     pub(super) bounces: u32,
     sky: [f32; 3],
+    /// How many maps there are, one behind the other, and which one is that of the rest; `maps`: none is.
+    maps: u32,
+    rest: u32,
 }
 
 /// Flux that the bounces leave, at most. What is left makes no texel renew itself when the bounces go on later (glsl/lightmaps/rank.comp).
@@ -34,6 +38,7 @@ pub(super) struct Lit<'a> {
     pub(super) map: &'a Lightmap,
     pub(super) rays: &'a SceneRays,
     pub(super) group: &'a LightmapGroup,
+    pub(super) lamps: &'a Lamps,
 }
 
 impl Lit<'_> {
@@ -52,21 +57,24 @@ impl Lit<'_> {
         let direction_count = if emissive || sky { options.samples } else { 0 };
         let pass = Direct {
             scene_rays: self.rays.clone(),
-            scene_lights: scene.lights(graph),
+            scene_lights: self.lamps.lights.clone(),
             lightmap: self.group.clone(),
             direct: direct.write(),
             push: DirectPush {
                 texel_count: self.map.count,
-                light_count: scene.punctual_count,
+                light_count: self.lamps.punctual_count,
                 emitter_count: scene.emissive_count,
                 sample_count,
                 direction_count,
                 density_scale: scene.emissive_density_scale,
                 sky: scene.sky,
+                own_maps: self.lamps.own,
+                rest: u32::from(self.lamps.rest),
             },
         };
         // A punctual light takes one from each quarter of a texel, and where these are, one asks beforehand.
-        let quarters = if scene.punctual_count > 0 { 4 * (1 + scene.punctual_count) } else { 0 };
+        let punctual_count = self.lamps.punctual_count;
+        let quarters = if punctual_count > 0 { 4 * (1 + punctual_count) } else { 0 };
         let rays = u64::from(quarters + sample_count + direction_count) * self.map.used.len() as u64;
         graph.pass(name, pass).note("rays", rays).threads([self.map.count, 1, 1]);
     }
@@ -77,15 +85,15 @@ impl Approximated {
     pub(super) fn declare(
         graph: &mut Graph<'_>,
         scene: &TracedScene,
-        texels: &LightTexels,
+        (texels, lamps): (&LightTexels, &Lamps),
         options: &LightmapsOptions,
     ) -> Approximated {
-        let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count());
-        let lit = Lit { map: &texels.map, rays: &texels.rays, group: &texels.group };
+        let direct = graph.buffer::<[f32; 4]>("lightmaps.direct", texels.count() * lamps.maps() as usize);
+        let lit = Lit { map: &texels.map, rays: &texels.rays, group: &texels.group, lamps };
         lit.declare(graph, scene, direct, options, "diffuse/lightmaps/aim/direct");
         let bounces =
             options.bounces.map_or_else(|| bounces_for(scene.greatest_albedo()), |bounces| bounces.max(1) - 1);
-        Approximated { direct, bounces, sky: scene.sky }
+        Approximated { direct, bounces, sky: scene.sky, maps: lamps.maps(), rest: lamps.own }
     }
 
     /// After all bounces, from nothing; `caustics`: what photons bring.
@@ -111,7 +119,10 @@ impl Approximated {
         for number in 0..bounces {
             let after = match last.filter(|_| number + 1 == bounces) {
                 Some(last) => last,
-                None => graph.buffer::<[f32; 4]>(&format!("lightmaps.bounced.{number}"), texels.count()),
+                None => {
+                    let count = texels.count() * self.maps as usize;
+                    graph.buffer::<[f32; 4]>(&format!("lightmaps.bounced.{number}"), count)
+                }
             };
             let pass = Bounce {
                 direct: self.direct.texels(FLOATS4),
@@ -121,9 +132,16 @@ impl Approximated {
                 caustics: caustics.map_or(TexelBuffer::absent(), |caustics| caustics.texels(FLOATS4)),
                 arrivals: texels.arrivals.texels(FLOATS4),
                 after: after.write(),
-                push: BouncePush { texel_count: texels.map.count, link_count: texels.link_count, sky: self.sky },
+                push: BouncePush {
+                    texel_count: texels.map.count,
+                    link_count: texels.link_count,
+                    sky: self.sky,
+                    maps: self.maps,
+                    rest: self.rest,
+                },
             };
-            graph.pass(&format!("diffuse/lightmaps/aim/bounce.{number}"), pass).threads(texels.threads());
+            let pass = graph.pass(&format!("diffuse/lightmaps/aim/bounce.{number}"), pass);
+            pass.threads([self.maps * texels.map.count, 1, 1]);
             light = after;
         }
         light

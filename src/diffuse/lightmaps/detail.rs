@@ -3,6 +3,7 @@
 
 use super::aim::Lit;
 use super::formats::FLOATS4;
+use super::lamps::Lamps;
 use super::options::LightmapsOptions;
 use super::texels::{LightTexels, placed, texels_asked};
 use crate::frame::rays::TracedScene;
@@ -18,7 +19,7 @@ const MOST: u32 = 64 * 65_535;
 pub(super) fn in_detail(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
-    texels: &LightTexels,
+    (texels, lamps): (&LightTexels, &Lamps),
     (diffuse, caustics): (BufferRef<[f32; 4]>, Option<BufferRef<[f32; 4]>>),
     (options, detail): (&LightmapsOptions, u32),
 ) -> StoredLight {
@@ -32,7 +33,7 @@ pub(super) fn in_detail(
     let count = map.count as usize;
     let (group, valid, places) = placed(graph, &texels.rays, &map, ["lightmaps.detail", "diffuse/lightmaps/detail"]);
     let direct = graph.buffer::<[f32; 4]>("lightmaps.detail.direct", count);
-    let lit = Lit { map: &map, rays: &texels.rays, group: &group };
+    let lit = Lit { map: &map, rays: &texels.rays, group: &group, lamps };
     lit.declare(graph, scene, direct, options, "diffuse/lightmaps/detail/direct");
 
     let mut look_up = |name: &str, light: BufferRef<[f32; 4]>, [stride, offset]: [u32; 2]| {

@@ -72,6 +72,8 @@ struct Drawing<'a> {
     texels: &'a LightTexels,
     aim: BufferRef<[f32; 4]>,
     gathered: BufferRef<[f32; 4]>,
+    /// Of several lights, one behind the other in both.
+    maps: u32,
     chosen: Chosen,
     batches: Batches,
     plane: f64,
@@ -89,7 +91,7 @@ struct Drawing<'a> {
 pub(super) fn gather(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    (aim, gathered): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    (aim, gathered, maps): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>, u32),
     chosen: Chosen,
     options: &LightmapsOptions,
 ) {
@@ -103,6 +105,7 @@ pub(super) fn gather(
         texels,
         aim,
         gathered,
+        maps,
         chosen,
         batches,
         plane: options.plane,
@@ -118,7 +121,9 @@ pub(super) fn gather(
     for number in 0..chosen.most.div_ceil(views) {
         drawing.list(graph, number);
         drawing.draw(graph, number);
-        drawing.sum(graph, number);
+        for map in 0..maps {
+            drawing.sum(graph, number, map);
+        }
     }
 }
 
@@ -185,10 +190,12 @@ impl Drawing<'_> {
         pass.draw_indirect(self.arguments, 0, 1);
     }
 
-    /// Looks up what they show, and sums it.
-    fn sum(&self, graph: &mut Graph<'_>, number: u32) {
+    /// Looks up what they show of one of the maps, and sums it.
+    fn sum(&self, graph: &mut Graph<'_>, number: u32, map: u32) {
         let Batches { views, tiles, side, .. } = self.batches;
         let (first, plane) = (self.first(number), self.plane as f32);
+        let first_of_map = map * self.texels.map.count;
+        let number = if self.maps > 1 { format!("{number}.{map}") } else { number.to_string() };
         let pass = Shade {
             scene_rays: self.texels.rays.clone(),
             lightmap: self.texels.group.clone(),
@@ -197,7 +204,7 @@ impl Drawing<'_> {
             head: self.chosen.head.texels(WORD),
             seen: self.seen.sampled(),
             light: self.light.write(),
-            push: ShadePush { first, view_count: views, columns: tiles[0], side, plane },
+            push: ShadePush { first, view_count: views, columns: tiles[0], side, plane, first_of_map },
         };
         let pass = graph.pass(&format!("diffuse/lightmaps/iim/shade.{number}"), pass);
         pass.threads([views * side * side, 1, 1]);
@@ -206,7 +213,7 @@ impl Drawing<'_> {
             head: self.chosen.head.texels(WORD),
             light: self.light.texels(FLOATS4),
             gathered: self.gathered.read_write(),
-            push: SumPush { first, view_count: views, side, plane, covered: covered(side, self.plane) as f32 },
+            push: SumPush { first, view_count: views, side, plane, covered: covered(side, self.plane) as f32, first_of_map },
         };
         let pass = graph.pass(&format!("diffuse/lightmaps/iim/gather.{number}"), pass);
         pass.note("fragments a texel", u64::from(side * side))

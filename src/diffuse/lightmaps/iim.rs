@@ -15,12 +15,12 @@ const STEPS: u32 = 1024;
 pub(super) fn all(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    aim: BufferRef<[f32; 4]>,
+    (aim, maps): (BufferRef<[f32; 4]>, u32),
     options: &LightmapsOptions,
 ) -> BufferRef<[f32; 4]> {
-    let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count());
+    let gathered = graph.buffer::<[f32; 4]>("lightmaps.gathered", texels.count() * maps as usize);
     graph.fill_buffer("diffuse/lightmaps/iim/clear", gathered, 0);
-    gather(graph, texels, (aim, gathered), texels.all(), options);
+    gather(graph, texels, (aim, gathered, maps), texels.all(), options);
     gathered
 }
 
@@ -28,7 +28,7 @@ pub(super) fn all(
 pub(super) fn gather(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    maps: (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    maps: (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>, u32),
     chosen: Chosen,
     options: &LightmapsOptions,
 ) {
@@ -41,7 +41,7 @@ pub(super) fn gather(
 fn by_rays(
     graph: &mut Graph<'_>,
     texels: &LightTexels,
-    (aim, gathered): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>),
+    (aim, gathered, maps): (BufferRef<[f32; 4]>, BufferRef<[f32; 4]>, u32),
     chosen: Chosen,
     options: &LightmapsOptions,
 ) {
@@ -55,7 +55,8 @@ fn by_rays(
             list: chosen.list.texels(WORD),
             head: chosen.head.texels(WORD),
             gathered: gathered.read_write(),
-            push: GatherPush { first, end, count: options.rays },
+            maps,
+            push: GatherPush { first, end, count: options.rays, texel_count: texels.map.count },
         };
         let pass = graph.pass(&format!("diffuse/lightmaps/iim/gather.{number}"), pass);
         let pass = pass.note("rays a texel", u64::from(end - first)).count("texels", chosen.head, 3);

@@ -4,7 +4,7 @@
 //! 2. The approximated illumination map (AIM): all light that texels receive, of the lights by shadow rays, of other texels along links (`aim.rs`). It stands while
 //!    lights do. Or by photons (`photons.rs`).
 //! 3. The indirect illumination map (IIM): texels gather by rays what the AIM says of where these end (`iim.rs`), or by drawing what they see (`hemicube.rs`), all of
-//!    them, or as many a frame as the options say (`renewal.rs`).
+//!    them, or as many a frame as the options say (`renewal.rs`); while nothing changes, with further rounds of rays and of photons (`rounds.rs`).
 //! 4. Pixels interpolate the IIM (`shade.rs`). That alone follows the camera.
 //!
 //! Whoever takes the light off the device gets it on finer texels (`detail.rs`).
@@ -14,10 +14,12 @@ mod detail;
 mod formats;
 mod hemicube;
 mod iim;
+mod lamps;
 mod maps;
 pub(crate) mod options;
 mod photons;
 mod renewal;
+mod rounds;
 mod shade;
 #[cfg(test)]
 mod tests;
@@ -25,6 +27,7 @@ mod texels;
 
 use self::aim::Approximated;
 use self::detail::in_detail;
+use self::lamps::Lamps;
 use self::maps::Maps;
 use self::options::{LightmapsGather, LightmapsOptions, LightmapsSettle, LightmapsSource};
 use self::renewal::renewed;
@@ -83,26 +86,31 @@ impl Method for Lightmaps {
     fn declare(cx: &mut FrameCx<'_, '_>, options: &LightmapsOptions) -> Result<Option<ImageRef>, Error> {
         let Some(scene) = cx.rays() else { return Ok(None) };
         let Some(texels) = LightTexels::declare(cx.graph, scene, options) else { return Ok(None) };
-        let light = Approximated::declare(cx.graph, scene, &texels, options);
+        let lamps = Lamps::declare(cx.graph, scene, options);
+        let light = Approximated::declare(cx.graph, scene, (&texels, &lamps), options);
         let maps = match options.settle {
             LightmapsSettle::Always => {
                 let (aim, caustics) = match options.source {
                     LightmapsSource::Rays => {
-                        let caustics = photons::caustics(cx.graph, scene, &texels, options, None);
+                        let caustics = photons::caustics(cx.graph, (scene, &lamps), &texels, options, None);
                         (light.settled(cx.graph, &texels, caustics), caustics)
                     }
-                    LightmapsSource::Photons => (photons::aim(cx.graph, scene, &texels, options, None), None),
+                    LightmapsSource::Photons => (photons::aim(cx.graph, (scene, &lamps), &texels, options, None), None),
                 };
-                let diffuse = iim::all(cx.graph, &texels, aim, options);
+                let diffuse = iim::all(cx.graph, &texels, (aim, lamps.maps()), options);
                 if let Some(detail) = cx.frame.stored_light {
                     let light = (diffuse, caustics);
-                    cx.frame.offers.put(in_detail(cx.graph, scene, &texels, light, (options, detail)));
+                    cx.frame.offers.put(in_detail(cx.graph, scene, (&texels, &lamps), light, (options, detail)));
                 }
                 Maps { gathered: diffuse, received: Some(aim) }
             }
             LightmapsSettle::First | LightmapsSettle::Never => {
-                renewed(cx.graph, (scene, cx.frame.data.identity), &texels, &light, options)
+                renewed(cx.graph, (scene, cx.frame.data.identity), (&texels, &lamps), &light, options)
             }
+        };
+        let maps = Maps {
+            gathered: lamps.combined(cx.graph, &texels, (maps.gathered, "gathered")),
+            received: maps.received.map(|received| lamps.combined(cx.graph, &texels, (received, "received"))),
         };
         Ok(Some(shade::shade(cx, scene, &texels, &maps, options.show)))
     }

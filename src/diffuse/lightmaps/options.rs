@@ -91,8 +91,12 @@ options! {
     settle: LightmapsSettle = LightmapsSettle::First, paper = LightmapsSettle::Never; OptionKind::Choice(LightmapsSettle::NAMES), "", "";
     /// Texels that a frame renews at most, those first whose light changed most.
     texels: u32 = 512, draft = 256, high = 2048, paper = 20; OptionKind::Integer(1, 1_000_000), "texels", "linear";
+    /// Rounds of other rays, and of other photons, that join while nothing changes: the mean is kept. 1: none joins.
+    rounds: u32 = 16, draft = 4, paper = 1; OptionKind::Integer(1, 64), "rounds", "";
     /// Share of what is left to a texel's new light that a frame goes; 1: at once.
     blend: f64 = 0.5; OptionKind::Number(0.01, 1.0), "", "";
+    /// Punctual lights that have maps of their own, the first ones of the scene: dimming, tinting and switching them renews nothing.
+    per_light: u32 = 0; OptionKind::Integer(0, 15), "lights", "linear";
     /// What the slot shows: its light, or one of the two maps on white surfaces, to look at.
     show: LightmapsShow = LightmapsShow::Light; OptionKind::Choice(LightmapsShow::NAMES), "", "";
 }

@@ -23,7 +23,7 @@ pub(super) struct EmitterTable {
     /// The same for emissive triangles alone.
     pub(super) triangle_records: Vec<[u32; 4]>,
     /// What those send out, W (luminance).
-    triangle_power: f64,
+    pub(super) triangle_power: f64,
 }
 
 impl EmitterTable {
@@ -89,7 +89,7 @@ pub(super) fn emitter_table(
 }
 
 /// What an intensity times this is power.
-fn extent_of(light: &PlacedLight, radius: f64) -> f64 {
+pub(super) fn extent_of(light: &PlacedLight, radius: f64) -> f64 {
     match light.kind {
         LightKind::Point => 4.0 * PI,
         LightKind::Spot { outer_angle, .. } => 2.0 * PI * (1.0 - f64::from(outer_angle).cos()),

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::emitters::{EmitterTable, emitter_table};
+use super::emitters::{EmitterTable, emitter_table, extent_of, luminance};
 use super::lightmap::{Lightmap, Texels};
 use super::looks::Looks;
 use super::samples::SurfaceSamples;
@@ -46,6 +46,10 @@ pub(crate) struct TracedScene {
     pub(crate) light_paths: bool,
     /// What all lights but the sky send out, W (luminance).
     pub(crate) power: f64,
+    /// What emissive surfaces do.
+    pub(crate) emissive_power: f64,
+    /// All punctual lights, black ones too, in the scene's order.
+    pub(crate) lamps: Vec<Lamp>,
     /// Where those paths are sent.
     pub(crate) target_shares: TargetShares,
     /// Triangles, with the densities that points of lights are drawn with.
@@ -57,6 +61,20 @@ pub(crate) struct TracedScene {
     target_densities: Uploaded,
     /// Of the densities that points of emissive surfaces are drawn with.
     densities_key: u64,
+}
+
+/// A punctual light.
+pub(crate) struct Lamp {
+    pub(crate) light: types::Light,
+    /// What an intensity times this is power.
+    pub(crate) extent: f64,
+}
+
+impl Lamp {
+    /// Of its intensity.
+    pub(crate) fn luminance(&self) -> f64 {
+        luminance(self.light.intensity)
+    }
 }
 
 impl std::ops::Deref for TracedScene {
@@ -130,6 +148,12 @@ impl TracedScene {
             greatest_radiance: scene.materials().iter().flat_map(|material| material.emissive).fold(0.0, f32::max),
             light_paths: facts.glossy && !table.records.is_empty(),
             power: table.power,
+            emissive_power: table.triangle_power,
+            lamps: scene
+                .placed_lights()
+                .iter()
+                .map(|placed| Lamp { light: punctual_light(placed, origin), extent: extent_of(placed, radius) })
+                .collect(),
             target_shares: found.shares,
             triangles: records(device, &surfaces, &table, held)?,
             emitters: upload("traced.emitters", &table.records)?,

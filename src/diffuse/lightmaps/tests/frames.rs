@@ -15,7 +15,7 @@ pub(super) fn asked(camera: &CameraView) -> FrameRequest {
     FrameRequest { timing: Timing::Passes, ..request([32, 24], camera.clone(), &[Slot::Diffuse]) }
 }
 
-fn ran(frame: &Frame) -> Vec<String> {
+pub(super) fn ran(frame: &Frame) -> Vec<String> {
     passes_run(frame, "diffuse/lightmaps")
 }
 
@@ -25,7 +25,7 @@ pub(super) fn renewed(frame: &Frame) -> u64 {
     passes.filter_map(|row| row.work.get("texels")).sum()
 }
 
-fn pixels(frame: &Frame) -> &[[f32; 3]] {
+pub(super) fn pixels(frame: &Frame) -> &[[f32; 3]] {
     &frame.slots[&Slot::Diffuse].pixels
 }
 
@@ -110,7 +110,7 @@ fn the_same_sequence_has_the_same_bits_and_ends() {
 }
 
 /// Two closed rooms, a light in each.
-fn two_closed_rooms() -> Scene {
+pub(super) fn two_closed_rooms() -> Scene {
     let mut scene = Scene::empty("two closed rooms");
     for (number, albedo) in [[0.7, 0.5, 0.3], [0.3, 0.5, 0.7]].into_iter().enumerate() {
         let wall = scene.add_material(lambert(albedo)).expect("a sound material");

@@ -2,7 +2,9 @@
 
 mod frames;
 mod hemicube;
+mod lamps;
 mod photons;
+mod rounds;
 
 use glam::{DAffine3, DVec3};
 
@@ -19,9 +21,9 @@ use crate::method::{Method, Options, Preset};
 use crate::renderer::{DiffuseMethod, Settings, Slot, Technique};
 use crate::scene::{CameraView, LightKind, Material, NodeId, Scene};
 
-/// Few and coarse texels.
+/// Few and coarse texels; nothing joins once they are gathered.
 fn options() -> LightmapsOptions {
-    LightmapsOptions { count: 4000, rays: 128, ..LightmapsOptions::preset(Preset::Default) }
+    LightmapsOptions { count: 4000, rays: 128, rounds: 1, ..LightmapsOptions::preset(Preset::Default) }
 }
 
 fn settings(options: LightmapsOptions) -> Settings {

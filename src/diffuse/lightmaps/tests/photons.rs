@@ -13,12 +13,12 @@ use crate::gpu_tests::session::Session;
 use crate::renderer::{DiffuseMethod, Frame};
 use crate::scene::{CameraView, LightKind, Material, MaterialId, NodeId, Scene};
 
-fn by_photons() -> LightmapsOptions {
+pub(super) fn by_photons() -> LightmapsOptions {
     LightmapsOptions { source: LightmapsSource::Photons, count: 3000, ..options() }
 }
 
 /// What the pass that sends photons counted.
-fn sent(frame: &Frame) -> u64 {
+pub(super) fn sent(frame: &Frame) -> u64 {
     let passes = frame.timings.passes.iter().filter(|row| row.full_name() == "diffuse/lightmaps/photons/send");
     passes.filter_map(|row| row.work.get("sent")).sum()
 }
@@ -56,7 +56,7 @@ fn one_floor_under_two_rooms_does_not_leak() {
 }
 
 /// Two closed rooms, a light in each, and a block in the first.
-fn two_rooms() -> (Scene, NodeId) {
+pub(super) fn two_rooms() -> (Scene, NodeId) {
     let mut scene = Scene::empty("two closed rooms");
     let wall = scene.add_material(lambert([0.7, 0.5, 0.3])).expect("a sound material");
     for room in [0.0, 3.0] {
@@ -74,7 +74,7 @@ fn block(scene: &mut Scene, material: MaterialId, center: DVec3) -> NodeId {
     place(scene, faces, DAffine3::from_translation(center))
 }
 
-fn move_to(scene: &mut Scene, node: NodeId, center: DVec3) {
+pub(super) fn move_to(scene: &mut Scene, node: NodeId, center: DVec3) {
     scene.set_local_transform(node, DAffine3::from_translation(center)).expect("sound");
 }
 
