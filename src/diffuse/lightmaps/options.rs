@@ -91,7 +91,7 @@ options! {
     settle: LightmapsSettle = LightmapsSettle::First, paper = LightmapsSettle::Never; OptionKind::Choice(LightmapsSettle::NAMES), "", "";
     /// Texels that a frame renews at most, those first whose light changed most.
     texels: u32 = 512, draft = 256, high = 2048, paper = 20; OptionKind::Integer(1, 1_000_000), "texels", "linear";
-    /// Rounds of other rays, and of other photons, that join while nothing changes: the mean is kept. 1: none joins.
+    /// Rounds of other rays, and of other photons, that join while nothing changes: the mean is kept. 1: none joins. Hemicubes have rounds of photons alone.
     rounds: u32 = 16, draft = 4, paper = 1; OptionKind::Integer(1, 64), "rounds", "";
     /// Share of what is left to a texel's new light that a frame goes; 1: at once.
     blend: f64 = 0.5; OptionKind::Number(0.01, 1.0), "", "";
