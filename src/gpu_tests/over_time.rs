@@ -18,9 +18,10 @@ fn sequence(fps: f64) -> Sequence<'static> {
     Sequence { fps, flight: None, camera: None, lag: true, compare: None }
 }
 
-/// `lightmaps` and nothing else but direct light, with few texels and of these few a frame.
+/// `lightmaps` and nothing else but direct light, with few texels and of these few a frame; further rounds would make still pictures better from frame to frame.
 fn lightmaps() -> Settings {
-    let options = LightmapsOptions { count: 1000, rays: 64, texels: 100, ..LightmapsOptions::preset(Preset::Default) };
+    let options =
+        LightmapsOptions { count: 1000, rays: 64, texels: 100, rounds: 1, ..LightmapsOptions::preset(Preset::Default) };
     let mut settings = Settings::new(Technique::Direct, Preset::Default);
     settings.methods.diffuse = DiffuseMethod::Lightmaps;
     Settings { lightmaps: options, ..settings }

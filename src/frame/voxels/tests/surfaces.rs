@@ -44,7 +44,7 @@ fn corners_are_rounded_by_less_than_a_hundredth_of_a_voxel() {
     let session = Session::open();
     let mut next = numbers(1);
     let positions: Vec<[f32; 3]> = (0..300).map(|_| [next(), 0.6 * next(), 0.3 * next()]).collect();
-    let read = checked(&session, &soup(positions.clone()), 128);
+    let read = checked(&session, &soup(positions.clone()), 64);
     assert_eq!(read.triangles.len(), 100);
     let scale = f64::from(read.grid.record.units) / f64::from(read.grid.record.size);
     let origin = glam::Vec3::from(read.grid.record.origin_rs).as_dvec3() + read.origin;
@@ -168,9 +168,9 @@ fn what_reaches_beyond_the_grid_is_cut() {
     positions.extend([[0.2, 0.3, 0.5], [far, 0.1, 0.5], [0.4, -far, 0.5]]);
     let scene = soup(positions.clone());
     let by = |voxelisation| {
-        let settings = settings(64, voxelisation);
+        let settings = settings(32, voxelisation);
         voxelise_in(&mut session.store(), &scene, &settings, 0.0, |data| {
-            VoxelGrid::of(DVec3::ZERO - data.origin, DVec3::ONE - data.origin, 1.0, 64)
+            VoxelGrid::of(DVec3::ZERO - data.origin, DVec3::ONE - data.origin, 1.0, 32)
         })
     };
     let read = by(Voxelisation::Compute);
