@@ -6,16 +6,16 @@ use crate::graph::bindings::BufferRef;
 use crate::method::FrameCx;
 use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 
-/// Invocations of a cache, which share the groups of lights.
-const LANES: u32 = 64;
-/// Steps of an invocation's loops for each light, and for a ray to a group of them.
-const LIGHT_STEPS: u32 = 2;
+/// Invocations of a cache, which share the groups of lights (glsl/volumes/light.glsl).
+const TURNS: u32 = 8;
+/// Steps of an invocation's loops for a ray to a group of lights, and before and after all groups.
 const RAY_STEPS: u32 = 341;
+const OTHER_STEPS: u32 = 64;
 
 /// Steps of a cone over voxels along one axis at most.
 const CONE_STEPS: u32 = 3;
 
-/// Numbers that a cache holds (glsl/volumes/light.comp).
+/// Numbers that a cache holds (glsl/volumes/light.glsl).
 fn numbers(bands: u32) -> usize {
     if bands == 3 { 28 } else { 12 }
 }
@@ -27,8 +27,8 @@ fn groups_at_once(lights: &AreaLights, options: &VolumesOptions, loop_steps: u32
         VolumesVisibility::Rays => RAY_STEPS,
         VolumesVisibility::Cones => CONE_STEPS * options.voxels,
     };
-    let steps = LIGHT_STEPS * lights.group_lights + seen;
-    LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
+    let steps = 1 + lights.group_lights + seen;
+    TURNS.saturating_mul(((loop_steps - OTHER_STEPS) / steps).max(1)).min(i32::MAX.cast_unsigned())
 }
 
 /// Some groups of lights, which one pass takes.

@@ -6,10 +6,14 @@
 mod lamps;
 mod space;
 
+use std::rc::Rc;
+
 use ash::vk;
 
 use self::space::{FLOATS, Light, Space, WORDS};
-use super::caches::{AreaLights, grouped};
+use super::caches::{AreaLights, LightRule, Points, Samples, grouped, spread_lights};
+use super::light_set::LightSet;
+use super::light_views::LightViews;
 use super::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -45,12 +49,23 @@ impl BounceRule {
     }
 }
 
+/// Lights of the light views.
+pub(crate) enum FirstLights<'l> {
+    Made(Rc<AreaLights>),
+    /// Small where samples receive much of them.
+    BySamples {
+        set: &'l LightSet,
+        views: &'l LightViews,
+        rule: LightRule,
+    },
+}
+
 /// Declares the passes. `shift`: from render space to that of rays; `first`: lights of the light views, if there are any. None where nothing is diffuse.
 pub(crate) fn sample_lights(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     shift: [f32; 3],
-    first: Option<&AreaLights>,
+    first: Option<FirstLights<'_>>,
     rule: &BounceRule,
 ) -> Option<AreaLights> {
     let cluster = 1 << (2 * rule.lod);
@@ -89,7 +104,7 @@ fn light(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     shift: [f32; 3],
-    first: Option<&AreaLights>,
+    first: Option<FirstLights<'_>>,
     space: &Space,
     rule: &BounceRule,
 ) -> Option<Light> {
@@ -97,7 +112,16 @@ fn light(
     if rule.bounces < 2 {
         return lamps;
     }
-    let from_views = first.map(|first| receive(graph, (shift, rule.paper), first, space));
+    let from_views = first.map(|first| {
+        let lights = match first {
+            FirstLights::Made(lights) => lights,
+            FirstLights::BySamples { set, views, rule } => {
+                let of = Samples { samples: space.samples, scene_rays: space.rays.clone(), shift };
+                Rc::new(spread_lights(graph, set, views, &Points::Samples(of), &rule))
+            }
+        };
+        receive(graph, (shift, rule.paper), &lights, space)
+    });
     let mut known = lamps.map(|lamps| (lamps, lamps));
     let mut sees_known = None;
     for number in 2..=rule.bounces {

@@ -32,8 +32,11 @@ const ROUNDS: u32 = 2;
 /// The caches of a frame.
 pub(crate) struct Caches {
     pub(crate) group: LightCaches,
-    /// Words 0 to 2: work groups of one cache each; word 3: how many there are.
+    /// Words 0 to 2: work groups of eight caches; word 3: how many there are.
     pub(crate) head: BufferRef<u32>,
+    /// Their addresses (glsl/caches/cascades.glsl), and what these are among.
+    pub(crate) nodes: BufferRef<u32>,
+    pub(crate) cascades: types::Cascades,
     /// Where they lie, in render space.
     #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
     pub(crate) positions: BufferRef<[f32; 4]>,
@@ -114,7 +117,7 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, rule: &Ca
         cache_addresses: addresses.texels(WORD),
         cache_horizons: horizons(graph, rule, (&asks, &nodes), addresses, positions).texels(WORDS),
     };
-    Caches { group, head: nodes.head, positions, capacity: nodes.capacity() }
+    Caches { group, head: nodes.head, nodes: nodes.items, cascades, positions, capacity: nodes.capacity() }
 }
 
 /// What the surfaces that ask for each cache have in front of them.

@@ -11,4 +11,4 @@ pub(crate) use self::allocate::{Caches, allocate};
 pub(crate) use self::cascades::CascadeRule;
 pub(crate) use self::lights::{AreaLights, LightRule, area_lights, grouped};
 pub(crate) use self::settings::{CacheSettings, CacheSight};
-pub(crate) use self::spread::{Picture, spread_lights};
+pub(crate) use self::spread::{Picture, Points, Samples, spread_lights};

@@ -2,9 +2,12 @@
 
 use ash::vk;
 
-use super::options::RadianceMapsOptions;
+use super::options::{RadianceMapsFill, RadianceMapsOptions};
+use super::search::search;
+use super::tables::tables;
 use crate::frame::caches::{AreaLights, CacheSight, Caches};
-use crate::graph::bindings::BufferRef;
+use crate::graph::Dependence;
+use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::method::FrameCx;
 use crate::shaders::radiance_maps::{
     Bound, BoundPush, Choose, ChoosePush, Mips, MipsPush, Write, WriteCones, WriteConesPush, WritePush,
@@ -34,9 +37,8 @@ pub(crate) struct Maps {
     pub(crate) caches: BufferRef<u32>,
     /// Words 0 to 2: work groups of one map each; word 3: how many there are.
     pub(crate) head: BufferRef<u32>,
-    /// Sums of light in whole numbers, three a texel, and what they are counted in.
-    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
-    pub(crate) sums: BufferRef<u32>,
+    /// What is known of texels, and lobes' albedos (`tables.rs`).
+    pub(crate) tables: BufferRef<[f32; 4]>,
     /// Texels with all levels (glsl/radiance_maps/map.glsl).
     pub(crate) texels: BufferRef<[f32; 4]>,
     /// How many there is room for.
@@ -79,54 +81,52 @@ pub(super) fn maps(
     pass.count("maps", head, 3).pixels(surface.size);
     graph.grows(list, head, 3);
 
-    let bounds = graph.buffer::<f32>("radiance_maps.bounds", capacity as usize);
-    let pass = Bound {
-        area_lights: lights.group.clone(),
-        light_caches: caches.group.clone(),
-        map_head: head.texels(WORD),
-        map_caches: list.texels(WORD),
-        bounds: bounds.start(),
-        push: BoundPush { capacity },
-    };
-    graph.pass("specular/radiance-maps/bound", pass).threads_indirect(head, 0);
-
-    let sums = graph.buffer::<u32>("radiance_maps.sums", 3 * texels * capacity as usize);
+    let tables = graph.upload("radiance_maps.tables", &tables(options.size), Dependence::NONE);
     let maps = graph.buffer::<[f32; 4]>("radiance_maps.texels", texels * capacity as usize);
-    let maps = Maps { slots, horizons, caches: list, head, sums, texels: maps, capacity };
-    write(cx, lights, caches, &maps, bounds, options);
+    let maps = Maps { slots, horizons, caches: list, head, tables, texels: maps, capacity };
+    let (map_bounds, sums, maps_written) = if options.fill == RadianceMapsFill::Search {
+        search(cx, lights, caches, &maps, options);
+        (TexelBuffer::absent(), TexelBuffer::absent(), maps.texels.read_write())
+    } else {
+        let (bounds, sums) = write(cx, lights, caches, &maps, options);
+        (bounds.texels(FLOAT), sums.texels(WORD), maps.texels.start_then_read())
+    };
     let pass = Mips {
         fill: options.fill_kind(),
         map_side: options.size.cast_signed(),
         map_head: head.texels(WORD),
-        map_bounds: bounds.texels(FLOAT),
-        sums: sums.texels(WORD),
-        maps: maps.texels.start_then_read(),
+        map_bounds,
+        sums,
+        maps: maps_written,
         push: MipsPush { capacity },
     };
     cx.graph.pass("specular/radiance-maps/mips", pass).threads_indirect(head, 0);
     maps
 }
 
-/// Groups of lights that one pass may take.
-fn groups_at_once(lights: &AreaLights, sight: &CacheSight, loop_steps: u32) -> u32 {
-    let seen = match sight {
+/// Steps of an invocation's loops for what a cache sees of a group.
+pub(super) fn sight_steps(sight: &CacheSight) -> u32 {
+    match sight {
         CacheSight::Open => 0,
         CacheSight::Rays => RAY_STEPS,
         CacheSight::Cones(voxels) => CONE_STEPS * voxels.resolution,
-    };
-    let steps = LIGHT_STEPS * lights.group_lights + seen;
+    }
+}
+
+/// Groups of lights that one pass may take.
+fn groups_at_once(lights: &AreaLights, sight: &CacheSight, loop_steps: u32) -> u32 {
+    let steps = LIGHT_STEPS * lights.group_lights + sight_steps(sight);
     LANES.saturating_mul(((loop_steps + 1) / steps).max(1)).min(i32::MAX.cast_unsigned())
 }
 
-/// Declares the passes that write all lights to all maps.
+/// Declares the passes that write all lights to all maps; returns what bounds the light of each, and sums of it in whole numbers, three a texel.
 fn write(
     cx: &mut FrameCx<'_, '_>,
     lights: &AreaLights,
     caches: &Caches,
     maps: &Maps,
-    bounds: BufferRef<f32>,
     options: &RadianceMapsOptions,
-) {
+) -> (BufferRef<f32>, BufferRef<u32>) {
     let sight = cx.frame.caches.sight;
     let (scene, rays) = cx.cache_rays();
     let voxels = match &sight {
@@ -135,6 +135,18 @@ fn write(
     };
     let surface = cx.frame.surface.group.clone();
     let graph = &mut *cx.graph;
+    let bounds = graph.buffer::<f32>("radiance_maps.bounds", maps.capacity as usize);
+    let pass = Bound {
+        area_lights: lights.group.clone(),
+        light_caches: caches.group.clone(),
+        map_head: maps.head.texels(WORD),
+        map_caches: maps.caches.texels(WORD),
+        bounds: bounds.start(),
+        push: BoundPush { capacity: maps.capacity },
+    };
+    graph.pass("specular/radiance-maps/bound", pass).threads_indirect(maps.head, 0);
+    let texels = 3 * (texel_count(options.size) * maps.capacity) as usize;
+    let map_sums = graph.buffer::<u32>("radiance_maps.sums", texels);
     let most = groups_at_once(lights, &sight, graph.traits().loop_steps);
     let (map_side, cached, fill) = (options.size.cast_signed(), u32::from(options.is_cached()), options.fill_kind());
     for first in (0..lights.group_count.max(1)).step_by(most as usize) {
@@ -143,7 +155,7 @@ fn write(
         } else {
             format!("specular/radiance-maps/write-{}", first / most + 1)
         };
-        let sums = if first == 0 { maps.sums.start_then_read() } else { maps.sums.read_write() };
+        let sums = if first == 0 { map_sums.start_then_read() } else { map_sums.read_write() };
         let (first_group, capacity) = (first.cast_signed(), maps.capacity);
         let end_group = first.saturating_add(most).min(lights.group_count).cast_signed();
         let (area_lights, light_caches, surface) = (lights.group.clone(), caches.group.clone(), surface.clone());
@@ -189,4 +201,5 @@ fn write(
             graph.pass(&name, pass).threads_indirect(maps.head, 0);
         }
     }
+    (bounds, map_sums)
 }

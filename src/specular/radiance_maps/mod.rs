@@ -6,9 +6,11 @@
 //!
 //! It finds L D S E alone: light that one diffuse surface scattered. Mirrors in mirrors, caustics in mirrors and further bounces are missing.
 
+mod accumulate;
 mod apply;
 mod maps;
 pub(crate) mod options;
+mod search;
 mod tables;
 
 use std::rc::Rc;
@@ -35,6 +37,10 @@ impl Method for RadianceMaps {
         LightPaths { bounces: Some(1), caustics: CausticPaths::None, mirrors: None }
     }
 
+    fn lead_in(options: &RadianceMapsOptions) -> u32 {
+        options.frames - 1
+    }
+
     fn inputs(_: &RadianceMapsOptions) -> Inputs {
         Inputs { caches: true, ..Inputs::default() }
     }
@@ -56,6 +62,9 @@ impl Method for RadianceMaps {
     }
 }
 
+/// Frames after which lights are drawn as before.
+const LONGEST_DRAW: u32 = 1 << 15;
+
 /// The slot, and what is behind it.
 pub(crate) struct Made {
     pub(crate) specular: ImageRef,
@@ -70,9 +79,15 @@ pub(crate) struct Made {
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn radiance_maps(cx: &mut FrameCx<'_, '_>, options: &RadianceMapsOptions) -> Made {
-    let settings = cx.frame.caches;
+    let mut settings = cx.frame.caches;
+    if options.frames > 1 {
+        settings.lights.drawn = 1 + cx.frame.time.index % LONGEST_DRAW;
+    }
     let (lights, caches) = (cx.area_lights(&settings), cx.caches(&settings));
     let maps = maps::maps(cx, &lights, &caches, options);
+    if options.frames > 1 {
+        accumulate::accumulate(cx, &caches, &maps, options);
+    }
     let specular = apply::apply(cx, &caches, &maps, options);
     Made { specular, maps, lights, positions: caches.positions }
 }
@@ -89,6 +104,7 @@ impl RadianceMapsOptions {
             RadianceMapsFill::None => 0,
             RadianceMapsFill::PullPush => 1,
             RadianceMapsFill::Footprint => 2,
+            RadianceMapsFill::Search => 3,
         }
     }
 
