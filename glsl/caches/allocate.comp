@@ -4,7 +4,7 @@
 #include "caches/cascades.glsl"
 
 // One invocation for each node that is asked for makes a light cache there if there is none yet. Whoever takes the node's word from 0 by compare-and-swap gives the cache its
-// number (Reich 2015, section 4.5.3). Words 0 to 2 of `head` are groups of one cache each, in rows of ROW_GROUPS; word 3 counts the caches, also those for which there is no
+// number (Reich 2015, section 4.5.3). Words 0 to 2 of `head` are groups of GROUP_CACHES caches, in rows of ROW_GROUPS; word 3 counts the caches, also those for which there is no
 // room.
 
 layout(local_size_x = 64) in;
@@ -31,8 +31,9 @@ void main() {
         return;
     }
     uint index = atomicAdd(head[3], 1u);
-    atomicMax(head[0], min(index + 1u, ROW_GROUPS));
-    atomicMax(head[1], index / ROW_GROUPS + 1u);
+    uint group = index / GROUP_CACHES;
+    atomicMax(head[0], min(group + 1u, ROW_GROUPS));
+    atomicMax(head[1], group / ROW_GROUPS + 1u);
     atomicMax(head[2], 1u);
     if (index < push.capacity) {
         nodes[index] = address;

@@ -25,6 +25,8 @@ struct Place {
 const uint NO_ADDRESS = 0xFFFFFFFFu;
 // In place of an address while a cache is being made, and where there was no room for one.
 const uint LOCKED = 0xFFFFFFFFu;
+// Caches that one group of invocations lights.
+const uint GROUP_CACHES = 8u;
 
 float cell_of_cascade(Cascades cascades, int cascade) {
     return cascades.cell * float(1 << cascade);

@@ -30,6 +30,7 @@ void main() {
     vec3 base = vec3(0.0);
     vec3 way = vec3(0.0);
     float squares = 0.0;
+    float farthest = 0.0;
     [[dont_unroll]] for (uint index = 0u; index < push.group_slots; ++index) {
         int slot = int(group * push.group_slots + index);
         vec4 first = texelFetch(slots, 2 * slot);
@@ -44,6 +45,7 @@ void main() {
             weights += weight;
             way += weight * off;
             squares += weight * (dot(off, off) + 0.5 * first.w);
+            farthest = max(farthest, length(off));
         }
     }
     if (next > before.x) {
@@ -51,6 +53,6 @@ void main() {
         float radius = 2.0 * sqrt(max(squares / weights - dot(mean, mean), 0.0));
         uint count = next - before.x;
         groups[2u * before.y] = floatBitsToUint(vec4(base + mean, radius));
-        groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(weights), 0u);
+        groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(vec2(weights, farthest + length(mean))));
     }
 }

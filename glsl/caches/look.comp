@@ -20,6 +20,13 @@ layout(push_constant, scalar) uniform Push {
     uint capacity;
 } push;
 
+// Most surfaces have nothing to add to what others said before.
+void raise(uint word, uint value) {
+    if (horizons[word] < value) {
+        atomicMax(horizons[word], value);
+    }
+}
+
 void main() {
     uint number = ask_of_invocation();
     if (number >= min(texelFetch(ask_head, 3).x, push.ask_capacity)) {
@@ -38,8 +45,8 @@ void main() {
     float height = dot(ask.normal, place.xyz - ask.position_rs) / place.w;
     uint first = 8u * (FACINGS * index + facing_of(ask.normal));
     for (uint axis = 0u; axis < 3u; ++axis) {
-        atomicMax(horizons[first + axis], component_steps(-ask.normal[axis]));
-        atomicMax(horizons[first + 4u + axis], component_steps(ask.normal[axis]));
+        raise(first + axis, component_steps(-ask.normal[axis]));
+        raise(first + 4u + axis, component_steps(ask.normal[axis]));
     }
-    atomicMax(horizons[first + 3u], floatBitsToUint(clamp(height + HORIZON_LIFT, 1e-3, 2.0 * HORIZON_LIFT)));
+    raise(first + 3u, floatBitsToUint(clamp(height + HORIZON_LIFT, 1e-3, 2.0 * HORIZON_LIFT)));
 }

@@ -86,6 +86,7 @@ void main() {
     vec3 base = vec3(0.0);
     vec3 way = vec3(0.0);
     float squares = 0.0;
+    float farthest = 0.0;
     uint end = slot + (1u << (2u * (cut >> 8 & 15u)));
     [[dont_unroll]] for (uint at = slot; at < end;) {
         uint own = texelFetch(cuts, int(at)).x;
@@ -105,6 +106,7 @@ void main() {
             weights += weight;
             way += weight * off;
             squares += weight * (dot(off, off) + 0.5 * first.w);
+            farthest = max(farthest, length(off));
         }
         at += size;
     }
@@ -112,5 +114,5 @@ void main() {
     float radius = 2.0 * sqrt(max(squares / max(weights, 1e-37) - dot(mean, mean), 0.0));
     uint count = next - before.x;
     groups[2u * before.y] = floatBitsToUint(vec4(base + mean, radius));
-    groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(weights), 0u);
+    groups[2u * before.y + 1u] = uvec4(before.x, count, floatBitsToUint(vec2(weights, farthest + length(mean))));
 }

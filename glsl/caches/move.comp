@@ -39,8 +39,10 @@ void main() {
     vec3 way = clamp(MARGIN - height, 0.0, LONGEST_MOVE) * ask.normal;
     for (int axis = 0; axis < 3; ++axis) {
         uint steps = uint(abs(way[axis]) * MOVE_STEPS + 0.5);
-        if (steps > 0u) {
-            atomicMax(moves[6u * index + 2u * uint(axis) + (way[axis] < 0.0 ? 1u : 0u)], steps);
+        uint word = 6u * index + 2u * uint(axis) + (way[axis] < 0.0 ? 1u : 0u);
+        // Most ask for no more than others did before.
+        if (steps > 0u && moves[word] < steps) {
+            atomicMax(moves[word], steps);
         }
     }
 }

@@ -14,10 +14,11 @@ WeightedDraw start_draw(uint bits) {
 
 // `weight`: above 0.
 void offer(inout WeightedDraw draw, int thing, float weight) {
+    float before = draw.sum;
     draw.sum += weight;
-    float chance = weight / draw.sum;
-    bool taken = draw.random < chance;
-    draw.random = taken ? draw.random / chance : (draw.random - chance) / max(1.0 - chance, 1e-7);
+    float place = draw.random * draw.sum;
+    bool taken = place < weight;
+    draw.random = (taken ? place : place - weight) / (taken ? weight : before);
     draw.drawn = taken ? thing : draw.drawn;
 }
 

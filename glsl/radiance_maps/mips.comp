@@ -13,6 +13,8 @@ layout(local_size_x = 64) in;
 
 const uint FILL_PULL_PUSH = 1u;
 const uint FILL_FOOTPRINT = 2u;
+// Texels have their light already (radiance_maps/search.glsl).
+const uint FILL_SEARCH = 3u;
 // Gaps between lights, not what is dark.
 const int FILLED_LEVELS = 2;
 
@@ -27,20 +29,7 @@ layout(push_constant, scalar) uniform Push {
     uint capacity;
 } push;
 
-// All invocations of the group must come here.
-void finish_level() {
-    memoryBarrierBuffer();
-    barrier();
-}
-
-// Where the map begins.
-uint first_texel;
-
-vec4 texel_at(int level, ivec2 place) {
-    int side = side_of_level(level);
-    ivec2 texel = clamp(place, ivec2(0), ivec2(side - 1));
-    return maps[first_texel + uint(first_of_level(level) + texel.y * side + texel.x)];
-}
+#include "radiance_maps/levels.glsl"
 
 // What a texel of the level below gets of this one's light, per texel of this one.
 vec4 spread(int level, ivec2 finer) {
@@ -68,19 +57,6 @@ void write_levels(uint map, float unit) {
                 value += 0.25 * spread(level + 1, ivec2(texel % side, texel / side));
             }
             maps[first_texel + uint(first + texel)] = value;
-        }
-        finish_level();
-    }
-}
-
-void sum_levels() {
-    [[dont_unroll]] for (int level = 1; level < MAP_LEVELS; ++level) {
-        int side = side_of_level(level);
-        for (int texel = int(gl_LocalInvocationIndex); texel < side * side; texel += 64) {
-            ivec2 finer = 2 * ivec2(texel % side, texel / side);
-            vec4 sum = texel_at(level - 1, finer) + texel_at(level - 1, finer + ivec2(1, 0)) +
-                       texel_at(level - 1, finer + ivec2(0, 1)) + texel_at(level - 1, finer + 1);
-            maps[first_texel + uint(first_of_level(level) + texel)] = sum;
         }
         finish_level();
     }
@@ -115,8 +91,10 @@ void main() {
         return;
     }
     first_texel = map * uint(MAP_TEXELS);
-    float scale = scale_of_bound(texelFetch(map_bounds, int(map)).x);
-    write_levels(map, scale > 0.0 ? 1.0 / scale : 0.0);
+    if (FILL != FILL_SEARCH) {
+        float scale = scale_of_bound(texelFetch(map_bounds, int(map)).x);
+        write_levels(map, scale > 0.0 ? 1.0 / scale : 0.0);
+    }
     sum_levels();
     if (FILL == FILL_PULL_PUSH) {
         fill_gaps();

@@ -4,14 +4,10 @@
 
 #include "groups/light_caches.glsl"
 #include "groups/surface.glsl"
-#include "caches/arriving.glsl"
 #include "caches/rays.glsl"
-#include "lib/color.glsl"
-#include "lib/sobol.glsl"
-#include "lib/weighted_draw.glsl"
-#include "radiance_maps/horizon.glsl"
 #include "radiance_maps/map.glsl"
 #include "radiance_maps/of_map.glsl"
+#include "radiance_maps/target.glsl"
 
 // One group of invocations a map: each virtual area light i adds what it sends to the cache,
 //
@@ -118,21 +114,6 @@ void add_light(uint first, Frame frame, MapHorizon horizon, Vpl light, vec3 posi
         ivec2 texel = clamp(ivec2(square * float(MAP_SIDE)), ivec2(0), ivec2(MAP_SIDE - 1));
         add_to_texel(first, texel.y * MAP_SIDE + texel.x, amount);
     }
-}
-
-// The light of a group that a ray is sent to, drawn by what each gives that faces the cache and has a part before its horizon; -1 if none does.
-int target_of(LightGroup group, uint number, MapHorizon horizon, vec3 position_rs) {
-    WeightedDraw draw = start_draw(mix_bits(number));
-    for (int index = group.first; index < group.end; ++index) {
-        Vpl light = load_area_light(index);
-        vec3 direction;
-        float given = max3(point_light_from(light, position_rs, direction));
-        vec3 farthest = light.position_rs - position_rs + sqrt(PI * light.area_over_pi) * horizon.normal;
-        if (given > 0.0 && is_before(horizon, farthest)) {
-            offer(draw, index, given);
-        }
-    }
-    return draw.drawn;
 }
 
 void write_map() {

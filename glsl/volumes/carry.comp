@@ -21,7 +21,7 @@ layout(set = 0, binding = 3) uniform samplerBuffer last_light;
 layout(set = 0, binding = 4) writeonly buffer TableBlock { uint table[]; };
 layout(set = 0, binding = 5) writeonly buffer PlaceBlock { vec4 places[]; };
 layout(set = 0, binding = 6) writeonly buffer LightBlock { float light[]; };
-// Words 0 to 2: groups of one cache each, in rows of ROW_GROUPS; word 3: how many; from word 4 on the caches.
+// Words 0 to 2: groups of GROUP_CACHES caches, in rows of ROW_GROUPS; word 3: how many; from word 4 on the caches.
 layout(set = 0, binding = 7) buffer DueBlock { uint due[]; };
 
 layout(push_constant, scalar) uniform Push {
@@ -59,8 +59,9 @@ void main() {
         return;
     }
     uint number = atomicAdd(due[3], 1u);
-    atomicMax(due[0], min(number + 1u, ROW_GROUPS));
-    atomicMax(due[1], number / ROW_GROUPS + 1u);
+    uint group = number / GROUP_CACHES;
+    atomicMax(due[0], min(group + 1u, ROW_GROUPS));
+    atomicMax(due[1], group / ROW_GROUPS + 1u);
     atomicMax(due[2], 1u);
     due[4u + number] = cache;
 }

@@ -1,4 +1,4 @@
-// The light of one cache. The including file has visibility_of_group() and groups of 64 invocations.
+// The light of eight caches. The including file has visibility_of_group() and groups of 64 invocations.
 #ifndef VOLUMES_LIGHT
 #define VOLUMES_LIGHT
 
@@ -13,17 +13,17 @@
 #include "caches/rays.glsl"
 #include "volumes/numbers.glsl"
 
-// One group of invocations a cache: the light that comes to it from all virtual area lights, as spherical harmonics of two or three bands (Reich 2015, section 4.3.2),
+// One group of invocations for eight caches: the light that comes to each from all virtual area lights, as spherical harmonics of two or three bands (Reich 2015, section 4.3.2),
 //
-//   c_lm = Σ_i V_g(i) · Φ_i/π · |F_i| · y_lm(F_i/|F_i|)        W/m²
+//   c_lm = Σ_g V_g Σ_{i in g} Φ_i/π · |F_i| · y_lm(F_i/|F_i|)        W/m²
 //
 // F_i the light's vector of form factors (lib/disc.glsl), V_g the visibility of its group. The paper has (n_i·−ω_i)⁺ / (d_i² + A_i) along the unit vector ω_i towards the light. A
-// cache's light depends on where it lies and on what asks for it. Each invocation takes every 64th group of lights; then one invocation for each number (volumes/numbers.glsl) adds up
-// what they found, in a fixed order.
+// cache's light depends on where it lies and on what asks for it. Eight invocations take every eighth group of lights for a cache; then what they found (volumes/numbers.glsl) is added up,
+// in a fixed order. Eight neighbouring invocations take the same group for eight caches: their loops are equally long, and their rays end at the same light.
 //
-// `together`: neighbouring groups share a visibility where the cache sees them under an aperture that is small enough: adaptive shadow LOD, as the thesis' section 6.3 names it. Of 64
-// neighbouring groups, which are at work at the same time, those of one node of the largest level that is small enough draw one light, by what each gives to the cache, and whoever of the invocations is
-// free sends its ray or its cone.
+// `together`: neighbouring groups share a visibility where the cache sees them under an aperture that is small enough: adaptive shadow LOD, as the thesis' section 6.3 names it. All invocations
+// go through the eight caches one after the other. Of 64 neighbouring groups, which are at work at the same time, those of one node of the largest level that is small enough draw one
+// light, by what each gives to the cache, and whoever of the invocations is free sends its ray or its cone (volumes/together.glsl).
 
 // 1: the paper's lights, from all around.
 layout(constant_id = 3) const uint PAPER = 0u;
@@ -49,58 +49,60 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 const uint NUMBERS = 4u * uint(TEXELS);
+// Invocations of a cache.
+const int TURNS = 8;
 
 shared float found[64 * 28];
 
-// Of the surfaces that ask for the cache; the box around all of them, and the mean of the ways that they face.
-shared Horizon horizons[FACINGS];
-shared Horizon shared_whole;
-shared uint shared_count;
-shared vec3 shared_facing;
+// A cache, and the surfaces that ask for it.
+struct Receiver {
+    uint cache;
+    vec3 position_rs;
+    Horizon whole;  // around all surfaces
+    float slope;    // what it rises by in a metre at most
+    uint kinds;     // of surfaces, a bit each
+    vec3 facing;    // the mean of the ways that they face
+};
 
-// The same for one invocation: loops read shared memory no more than they must.
-Horizon whole;
-uint horizon_count;
-vec3 facing;
-
-// All invocations must come here.
-void load_horizons(uint cache) {
-    if (gl_LocalInvocationIndex == 0u) {
-        uint count = 0u;
-        vec3 sum = vec3(0.0);
-        Horizon around = Horizon(vec3(1.0), vec3(-1.0), -3e38);
-        [[dont_unroll]] for (uint index = 0u; index < FACINGS; ++index) {
-            Horizon horizon;
-            if (horizon_of_cache(cache, index, horizon)) {
-                horizons[count++] = horizon;
-                sum += 0.5 * (horizon.low + horizon.high);
-                around = Horizon(min(around.low, horizon.low), max(around.high, horizon.high), max(around.height, horizon.height));
-            }
+Receiver load_receiver(uint cache) {
+    Horizon around = Horizon(vec3(1.0), vec3(-1.0), -3e38);
+    uint kinds = 0u;
+    vec3 sum = vec3(0.0);
+    [[dont_unroll]] for (uint kind = 0u; kind < FACINGS && PAPER == 0u; ++kind) {
+        Horizon horizon;
+        if (horizon_of_cache(cache, kind, horizon)) {
+            kinds |= 1u << kind;
+            sum += 0.5 * (horizon.low + horizon.high);
+            around = Horizon(min(around.low, horizon.low), max(around.high, horizon.high), max(around.height, horizon.height));
         }
-        shared_count = count;
-        shared_whole = around;
-        shared_facing = sum / max(float(count), 1.0);
     }
-    barrier();
-    whole = shared_whole;
-    horizon_count = shared_count;
-    facing = shared_facing;
+    float slope = length(max(abs(around.low), abs(around.high)));
+    return Receiver(cache, position_of_cache(cache), around, slope, kinds, sum / max(float(bitCount(kinds)), 1.0));
 }
 
-bool is_above_one(uint index, vec3 way) {
-    return index < horizon_count && is_above(horizons[index], way);
+bool is_above_kind(Receiver receiver, uint kind, vec3 way) {
+    Horizon horizon;
+    return (receiver.kinds >> kind & 1u) != 0u && horizon_of_cache(receiver.cache, kind, horizon) && is_above(horizon, way);
 }
 
-bool is_above_any(vec3 way) {
-    bool above = is_above(whole, way);
-    if (above && horizon_count > 1u) {
+bool is_above_any(Receiver receiver, vec3 way) {
+    bool above = is_above(receiver.whole, way);
+    if (above && bitCount(receiver.kinds) > 1) {
         // Written out: steps of loops are counted (src/diffuse/volumes/light.rs).
-        above = is_above_one(0u, way) || is_above_one(1u, way) || is_above_one(2u, way) || is_above_one(3u, way) || is_above_one(4u, way) || is_above_one(5u, way);
+        above = is_above_kind(receiver, 0u, way) || is_above_kind(receiver, 1u, way) || is_above_kind(receiver, 2u, way) ||
+                is_above_kind(receiver, 3u, way) || is_above_kind(receiver, 4u, way) || is_above_kind(receiver, 5u, way);
     }
     return above;
 }
 
 shared uint shared_sent;
+
+// Whether any light of a group lies in front of a surface that asks for the cache; surely not, if not.
+bool may_be_above(Receiver receiver, LightGroup group) {
+    Horizon raised = receiver.whole;
+    raised.height += receiver.slope * group.reach;
+    return PAPER != 0u || is_above(raised, group.center_rs - receiver.position_rs);
+}
 
 struct Sums {
     mat3x4 low;    // a column for red, green, blue
@@ -110,6 +112,8 @@ struct Sums {
     vec4 grey_high;
     float grey_last;
 };
+
+const Sums NOTHING = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0), vec4(0.0), vec4(0.0), 0.0);
 
 void add(inout Sums sums, vec3 direction, vec3 received) {
     float grey = luminance(received);
@@ -123,6 +127,28 @@ void add(inout Sums sums, vec3 direction, vec3 received) {
         sums.last += last * received;
         sums.grey_high += grey * high;
         sums.grey_last += grey * last;
+    }
+}
+
+// Rounded before it is added to anything: together and apart sums have the same bits.
+Sums share_of(float share, Sums given) {
+    precise mat3x4 low = share * given.low;
+    precise mat3x4 high = share * given.high;
+    precise vec3 last = share * given.last;
+    precise vec4 grey_low = share * given.grey_low;
+    precise vec4 grey_high = share * given.grey_high;
+    precise float grey_last = share * given.grey_last;
+    return Sums(low, high, last, grey_low, grey_high, grey_last);
+}
+
+void add_sums(inout Sums sums, Sums more) {
+    sums.low += more.low;
+    sums.grey_low += more.grey_low;
+    if (BANDS == 3u) {
+        sums.high += more.high;
+        sums.last += more.last;
+        sums.grey_high += more.grey_high;
+        sums.grey_last += more.grey_last;
     }
 }
 
@@ -162,75 +188,59 @@ void put(uint first, Sums sums) {
     }
 }
 
-// Φ/π · |F|, and the unit vector along F.
-vec3 light_from(Vpl light, vec3 position_rs, out vec3 direction) {
+// Φ/π · |F|, and the unit vector along F. From behind a light, and from below all surfaces that ask for the cache, nothing comes.
+vec3 light_from(Vpl light, Receiver receiver, out vec3 direction) {
     if (PAPER != 0u) {
-        return point_light_from(light, position_rs, direction);
+        return point_light_from(light, receiver.position_rs, direction);
+    }
+    vec3 way = light.position_rs - receiver.position_rs;
+    direction = way;
+    if (dot(light.normal, way) >= 0.0 || !is_above_any(receiver, way)) {
+        return vec3(0.0);
     }
     Vpl disc = as_disc(light);
-    vec3 factor = disc_vector(disc, position_rs, facing);
+    vec3 factor = disc_vector(disc, receiver.position_rs, receiver.facing);
     float size = length(factor);
     direction = factor / max(size, 1e-30);
     return disc.strength * size;
 }
 
-// What a light gives, about. From behind it, and from below all surfaces that ask for the cache, nothing comes.
-float about_given(Vpl light, vec3 position_rs) {
-    vec3 direction;
-    float given = max3(point_light_from(light, position_rs, direction));
-    return PAPER != 0u || (given > 0.0 && is_above_any(light.position_rs - position_rs)) ? given : 0.0;
-}
-
-// The first lights of a group that give the cache something are known by a bit each.
-const int KNOWN_LIGHTS = 32;
-
 struct Target {
     int light;    // -1: none gives anything
     float given;  // by all of the group
-    uint gives;
+    Sums sums;
 };
 
-// One light of a group, drawn by what each gives, so that Σ_i E_i V_i of lights that are hidden in part is met in the mean. The number that it is drawn by is the group's:
-// neighbouring caches send their rays to the same light, and nothing flickers between them.
-Target target_of(LightGroup group, uint number, vec3 position_rs) {
+// What a group of lights sends to the cache, were it seen, and one of its lights, drawn by what each gives: Σ_i E_i V_i of lights that are hidden in part is met in the mean. The
+// number that it is drawn by is the group's: neighbouring caches send their rays to the same light, and nothing flickers between them.
+Target target_of(LightGroup group, uint number, Receiver receiver) {
+    Sums sums = NOTHING;
     WeightedDraw draw = start_draw(mix_bits(number));
-    uint gives = 0u;
     for (int index = group.first; index < group.end; ++index) {
-        float given = about_given(load_area_light(index), position_rs);
-        if (given > 0.0) {
-            offer(draw, index, given);
-            gives |= index - group.first < KNOWN_LIGHTS ? 1u << (index - group.first) : 0u;
-        }
-    }
-    return Target(draw.drawn, draw.sum, gives);
-}
-
-bool gives(Target target, LightGroup group, int index, vec3 position_rs) {
-    int place = index - group.first;
-    return place < KNOWN_LIGHTS ? (target.gives >> place & 1u) != 0u : about_given(load_area_light(index), position_rs) > 0.0;
-}
-
-// What the lights of a group that is seen so well give.
-void add_group(inout Sums sums, Target target, LightGroup group, float visibility, vec3 position_rs) {
-    for (int number = group.first; number < group.end && visibility > 0.0; ++number) {
-        if (gives(target, group, number, position_rs)) {
-            vec3 direction;
-            vec3 received = visibility * light_from(load_area_light(number), position_rs, direction);
+        vec3 direction;
+        vec3 received = light_from(load_area_light(index), receiver, direction);
+        float most = max3(received);
+        if (most > 0.0) {
+            offer(draw, index, most);
             add(sums, direction, received);
         }
     }
+    return Target(draw.drawn, draw.sum, sums);
 }
 
-// Every 64th group, each with a visibility of its own; returns how many were asked for.
-uint add_groups(inout Sums sums, int end, vec3 position_rs) {
+// Every eighth group, each with a visibility of its own; returns how many were asked for.
+uint add_groups(inout Sums sums, int end, Receiver receiver) {
     uint asked = 0u;
-    for (int index = push.first_group + int(gl_LocalInvocationIndex); index < end; index += 64) {
+    for (int index = push.first_group + int(gl_LocalInvocationIndex / GROUP_CACHES); index < end; index += TURNS) {
         LightGroup group = load_light_group(area_light_groups, index);
-        Target target = target_of(group, uint(index), position_rs);
+        if (!may_be_above(receiver, group)) {
+            continue;
+        }
+        Target target = target_of(group, uint(index), receiver);
         if (target.light >= 0) {
             ++asked;
-            float visibility = visibility_of_group(push.rays, group, load_area_light(target.light), position_rs);
-            add_group(sums, target, group, visibility, position_rs);
+            float visibility = visibility_of_group(push.rays, group, load_area_light(target.light), receiver.position_rs);
+            add_sums(sums, share_of(visibility, target.sums));
         }
     }
     return asked;
@@ -238,50 +248,75 @@ uint add_groups(inout Sums sums, int end, vec3 position_rs) {
 
 #include "volumes/together.glsl"
 
-// The cache that the invocations work for, and how many there are.
-uint cache_of_group(out uint count) {
-    uint number = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+// How many caches there are to light, and one of them.
+uint cache_count() {
     uint caches = min(texelFetch(cache_head, 3).x, push.capacity);
-    if (LISTED == 0u) {
-        count = caches;
-        return number;
-    }
-    count = min(due[3], caches);
-    return number < count ? due[4u + number] : 0u;
+    return LISTED != 0u ? min(due[3], caches) : caches;
 }
 
-void light_cache() {
+uint cache_of(uint number) {
+    return LISTED != 0u ? due[4u + number] : number;
+}
+
+// A number of a cache: what all turns have found, which lies `stride` apart from `first` on.
+void keep(uint cache, uint number, uint first, uint stride) {
+    float sum = 0.0;
+    [[dont_unroll]] for (int turn = 0; turn < TURNS; ++turn) {
+        sum += found[first + uint(turn) * stride + number];
+    }
+    uint place = cache * NUMBERS + number;
+    light[place] = push.adds != 0u ? light[place] + sum : sum;
+}
+
+// All invocations for one cache.
+uint light_together(uint cache, int end) {
     uint self = gl_LocalInvocationIndex;
-    uint count;
-    uint cache = cache_of_group(count);
-    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= count) {
-        return;
+    uint asked = find_nodes(end, load_receiver(cache));
+    if (self < NUMBERS) {
+        keep(cache, self, 0u, NUMBERS);
     }
+    return asked;
+}
+
+// Eight invocations for each of `count` caches from `first` on.
+uint light_apart(uint first, uint count, int end) {
+    uint self = gl_LocalInvocationIndex;
+    // Beyond the last cache invocations do its work once more, and leave it.
+    uint own = self % GROUP_CACHES;
+    Sums sums = NOTHING;
+    uint asked = add_groups(sums, end, load_receiver(cache_of(first + min(own, count - 1u))));
+    put(self * NUMBERS, sums);
+    barrier();
+    [[dont_unroll]] for (uint number = self; number < count * NUMBERS; number += 64u) {
+        uint of = number / NUMBERS;
+        keep(cache_of(first + of), number % NUMBERS, of * NUMBERS, GROUP_CACHES * NUMBERS);
+    }
+    return own < count ? asked : 0u;
+}
+
+void light_caches() {
+    uint self = gl_LocalInvocationIndex;
+    uint first = GROUP_CACHES * (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+    uint count = cache_count();
     int end = min(push.end_group, int(texelFetch(area_light_counts, 1).x));
-    if (push.adds != 0u && push.first_group >= end) {
+    if (first >= count || push.adds != 0u && push.first_group >= end) {
         return;
-    }
-    vec3 position_rs = position_of_cache(cache);
-    if (PAPER == 0u) {
-        load_horizons(cache);
     }
     if (self == 0u) {
         shared_sent = 0u;
     }
-    Sums sums = Sums(mat3x4(0.0), mat3x4(0.0), vec3(0.0), vec4(0.0), vec4(0.0), 0.0);
-    uint asked = TOGETHER != 0u ? add_nodes(sums, end, position_rs) : add_groups(sums, end, position_rs);
-    put(self * NUMBERS, sums);
     barrier();
+    uint here = min(count - first, GROUP_CACHES);
+    uint asked = 0u;
+    if (TOGETHER != 0u) {
+        [[dont_unroll]] for (uint own = 0u; own < here; ++own) {
+            asked += light_together(cache_of(first + own), end);
+        }
+    } else {
+        asked = light_apart(first, here, end);
+    }
     if (asked > 0u) {
         atomicAdd(shared_sent, asked);
-    }
-    if (self < NUMBERS) {
-        float sum = 0.0;
-        [[dont_unroll]] for (int lane = 0; lane < 64; ++lane) {
-            sum += found[uint(lane) * NUMBERS + self];
-        }
-        uint place = cache * NUMBERS + self;
-        light[place] = push.adds != 0u ? light[place] + sum : sum;
     }
     barrier();
     if (self == 0u && shared_sent > 0u) {

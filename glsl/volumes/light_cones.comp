@@ -3,10 +3,10 @@
 #include "caches/cone_visibility.glsl"
 #include "volumes/light.glsl"
 
-// The light of one cache (light.glsl), each group of lights seen by a cone through voxels.
+// The light of eight caches (light.glsl), each group of lights seen by a cone through voxels.
 
 layout(local_size_x = 64) in;
 
 void main() {
-    light_cache();
+    light_caches();
 }

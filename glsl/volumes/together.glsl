@@ -40,19 +40,34 @@ int target_of_node(uint first, int level, int group) {
     return draw.drawn;
 }
 
-// All groups, 64 neighbours at a time; returns for how many visibilities the invocation asked. All invocations must come here.
-uint add_nodes(inout Sums sums, int end, vec3 position_rs) {
+// Of a cache's numbers in each turn an invocation adds up so many at most.
+const uint OWN_NUMBERS = 4u;
+
+// Adds what the 64 invocations have found for their groups, in the order in which the turns do it that take groups alone.
+void add_found(inout float own[OWN_NUMBERS]) {
+    for (uint index = 0u; index < OWN_NUMBERS; ++index) {
+        uint place = gl_LocalInvocationIndex + 64u * index;
+        [[dont_unroll]] for (uint lane = 0u; lane < 64u && place < uint(TURNS) * NUMBERS; lane += uint(TURNS)) {
+            own[index] += found[lane * NUMBERS + place];
+        }
+    }
+}
+
+// All groups, 64 neighbours at a time: leaves in `found` what each turn has found, one after the other; returns for how many visibilities the invocation asked. All invocations must come here.
+uint find_nodes(int end, Receiver receiver) {
     uint self = gl_LocalInvocationIndex;
     uint asked = 0u;
+    float own[OWN_NUMBERS] = float[](0.0, 0.0, 0.0, 0.0);
     for (int base = push.first_group; base < end; base += 64) {
         int index = base + int(self);
-        LightGroup group = LightGroup(vec3(0.0), 0.0, 0, 0);
-        Target target = Target(-1, 0.0, 0u);
+        Target target = Target(-1, 0.0, NOTHING);
         int level = 0;
         if (index < end) {
-            group = load_light_group(area_light_groups, index);
-            target = target_of(group, uint(index), position_rs);
-            level = level_of_group(index, position_rs);
+            LightGroup group = load_light_group(area_light_groups, index);
+            level = level_of_group(index, receiver.position_rs);
+            if (may_be_above(receiver, group)) {
+                target = target_of(group, uint(index), receiver);
+            }
         }
         uint first = self & ~((1u << (2 * level)) - 1u);
         lane_given[self] = target.given;
@@ -78,13 +93,22 @@ uint add_nodes(inout Sums sums, int end, vec3 position_rs) {
                 node.center_rs = sphere.xyz;
                 node.radius = sphere.w;
             }
-            lane_seen[lane] = visibility_of_group(push.rays, node, load_area_light(lane_targets[lane]), position_rs);
+            lane_seen[lane] = visibility_of_group(push.rays, node, load_area_light(lane_targets[lane]), receiver.position_rs);
             ++asked;
         }
         barrier();
-        add_group(sums, target, group, target.light >= 0 ? lane_seen[first] : 0.0, position_rs);
+        put(self * NUMBERS, share_of(target.light >= 0 ? lane_seen[first] : 0.0, target.sums));
         barrier();
+        add_found(own);
     }
+    barrier();
+    for (uint index = 0u; index < OWN_NUMBERS; ++index) {
+        uint place = self + 64u * index;
+        if (place < uint(TURNS) * NUMBERS) {
+            found[place] = own[index];
+        }
+    }
+    barrier();
     return asked;
 }
 

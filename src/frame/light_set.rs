@@ -49,7 +49,8 @@ pub(crate) struct LightDetail {
 /// All lights of a frame and their views.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LightSet {
-    key: u64,
+    /// Names the lights and the surfaces that their views are made for.
+    pub(crate) key: u64,
     pub(crate) lights: Vec<types::Light>,
     /// The first ones are no samples of anything.
     pub(crate) punctual_count: u32,

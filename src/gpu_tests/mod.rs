@@ -58,6 +58,7 @@ mod points;
 mod points_filter;
 mod probe;
 mod radiance_maps;
+mod radiance_maps_frames;
 mod raster;
 mod rays;
 mod reference_auto;

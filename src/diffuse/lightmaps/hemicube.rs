@@ -213,7 +213,14 @@ impl Drawing<'_> {
             head: self.chosen.head.texels(WORD),
             light: self.light.texels(FLOATS4),
             gathered: self.gathered.read_write(),
-            push: SumPush { first, view_count: views, side, plane, covered: covered(side, self.plane) as f32, first_of_map },
+            push: SumPush {
+                first,
+                view_count: views,
+                side,
+                plane,
+                covered: covered(side, self.plane) as f32,
+                first_of_map,
+            },
         };
         let pass = graph.pass(&format!("diffuse/lightmaps/iim/gather.{number}"), pass);
         pass.note("fragments a texel", u64::from(side * side))

@@ -2,7 +2,7 @@
 
 use super::options::{VolumesOptions, VolumesVal, VolumesVisibility};
 use super::renewal::{Renewal, renewal};
-use crate::frame::caches::{AreaLights, CacheSight, Caches, Chunk, nodes};
+use crate::frame::caches::{AreaLights, CacheSight, Caches, Chunk, LANES, nodes};
 use crate::frame::voxels::Voxels;
 use crate::graph::bindings::{BufferRef, ReadBuffer, TexelBuffer};
 use crate::graph::{Graph, hash_of};
@@ -11,9 +11,12 @@ use crate::shaders::groups::{LightCaches, SceneRays};
 use crate::shaders::types::CacheRays;
 use crate::shaders::volumes::{Light, LightCones, LightConesPush, LightPush};
 
-/// Steps of an invocation's loops for each light; for 64 neighbouring groups that are taken together, among whose lights one is drawn.
-const LIGHT_STEPS: u32 = 2;
-const DRAW_STEPS: u32 = 64;
+/// Invocations of a cache, which share the groups of lights, and caches of a work group (glsl/volumes/light.glsl).
+const TURNS: u32 = 8;
+const GROUP_CACHES: u32 = 8;
+/// Steps of an invocation's loops before and after all groups of a cache; where 64 neighbouring groups are taken together, for their nodes and to draw one among their lights.
+const OTHER_STEPS: u32 = 80;
+const DRAW_STEPS: u32 = 128;
 
 /// Lights that passes of one name take.
 struct List<'l> {
@@ -72,8 +75,13 @@ pub(super) fn light(
     }
     let (sight, loop_steps) = (options.cache_settings().sight, graph.traits().loop_steps);
     let of_list = |list: &'_ List<'_>| {
-        let steps = LIGHT_STEPS * list.lights.group_lights + if list.nodes.is_some() { DRAW_STEPS } else { 0 };
-        list.lights.chunks(sight, steps, loop_steps).collect::<Vec<Chunk>>()
+        let steps = 1 + list.lights.group_lights;
+        // Together all invocations take one cache after the other.
+        let (steps, lanes, loop_steps) = match list.nodes {
+            Some(_) => (steps + DRAW_STEPS, LANES, loop_steps / GROUP_CACHES),
+            None => (steps, TURNS, loop_steps),
+        };
+        list.lights.chunks(sight, steps, (lanes, loop_steps.saturating_sub(OTHER_STEPS))).collect::<Vec<Chunk>>()
     };
     let chunks: Vec<(&List<'_>, Chunk)> =
         listed.iter().flat_map(|list| of_list(list).into_iter().map(move |chunk| (list, chunk))).collect();

@@ -17,8 +17,8 @@ mod tests;
 use std::rc::Rc;
 
 use self::options::{VolumesAreaLights, VolumesOptions, VolumesSpread, VolumesVal, VolumesVisibility, VolumesWeights};
-use crate::frame::bounces::{self, BounceRule};
-use crate::frame::caches::{AreaLights, LightRule, Picture, area_lights, spread_lights};
+use crate::frame::bounces::{self, BounceRule, FirstLights};
+use crate::frame::caches::{AreaLights, LightRule, Picture, Points, area_lights, spread_lights};
 use crate::frame::light_views::Views;
 use crate::frame::mirrored::MirroredPoints;
 use crate::frame::voxels;
@@ -97,9 +97,9 @@ fn lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<AreaL
         return even_lights(cx, options);
     }
     let (scene_rays, rays) = cx.cache_rays();
-    let picture = Picture { surface: cx.frame.surface, scene_rays, shift: rays.shift };
+    let points = Points::Picture(Picture { surface: cx.frame.surface, scene_rays, shift: rays.shift });
     Some(cx.shared((rule, options.spread), |cx, (rule, _)| {
-        spread_lights(cx.graph, cx.frame.set, cx.lights(), &picture, rule)
+        spread_lights(cx.graph, cx.frame.set, cx.lights(), &points, rule)
     }))
 }
 
@@ -107,6 +107,16 @@ fn even_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Option<Rc<
     let rule = light_rule(options).told_apart(cx.frame.set);
     let any = !cx.frame.set.views_of(rule.punctual).is_empty();
     any.then(|| cx.shared(rule, |cx, rule| area_lights(cx.graph, cx.frame.set, cx.lights(), rule)))
+}
+
+/// Those that samples receive.
+fn first_lights<'f>(cx: &mut FrameCx<'f, '_>, options: &VolumesOptions) -> Option<FirstLights<'f>> {
+    if options.spread == VolumesSpread::Views {
+        return even_lights(cx, options).map(FirstLights::Made);
+    }
+    let (set, rule) = (cx.frame.set, light_rule(options));
+    let any = !set.views_of(rule.punctual).is_empty();
+    any.then(|| FirstLights::BySamples { set, views: cx.lights(), rule })
 }
 
 /// Lights of what samples of the surfaces reflect, if anything is asked of them.
@@ -117,10 +127,8 @@ fn sample_lights(cx: &mut FrameCx<'_, '_>, options: &VolumesOptions) -> Rc<Optio
     let Some(scene) = cx.rays().filter(|scene| rule.wants_samples(scene)) else { return Rc::new(None) };
     let shift = (cx.frame.data.origin - scene.origin).as_vec3().to_array();
     // Whatever the picture shows, so that they stand while the camera moves.
-    let first = if options.bounces > 1 { even_lights(cx, options) } else { None };
-    cx.shared((light_rule(options), rule), |cx, (_, rule)| {
-        bounces::sample_lights(cx.graph, scene, shift, first.as_deref(), rule)
-    })
+    let first = if options.bounces > 1 { first_lights(cx, options) } else { None };
+    cx.shared((light_rule(options), rule), |cx, (_, rule)| bounces::sample_lights(cx.graph, scene, shift, first, rule))
 }
 
 /// Declares the method's passes in the order in which they run.

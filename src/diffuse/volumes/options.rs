@@ -159,6 +159,7 @@ impl VolumesOptions {
     pub(crate) fn cache_settings(&self) -> CacheSettings {
         CacheSettings {
             lights: LightRule {
+                drawn: 0,
                 punctual: false,
                 side: self.lights,
                 lod: self.lod,

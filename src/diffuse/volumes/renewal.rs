@@ -20,7 +20,7 @@ const HEAD_WORDS: usize = 4;
 pub(super) struct Renewal {
     /// The numbers of all caches, those that are not due taken over.
     pub(super) light: BufferRef<f32>,
-    /// Words 0 to 2: work groups of one cache each; word 3: how many are due; then which.
+    /// Words 0 to 2: work groups of eight caches; word 3: how many are due; then which.
     pub(super) due: BufferRef<u32>,
 }
 

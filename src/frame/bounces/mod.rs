@@ -6,10 +6,14 @@
 mod lamps;
 mod space;
 
+use std::rc::Rc;
+
 use ash::vk;
 
 use self::space::{FLOATS, Light, Space, WORDS};
-use super::caches::{AreaLights, CacheSight, grouped};
+use super::caches::{AreaLights, CacheSight, LANES, LightRule, Points, Samples, grouped, spread_lights};
+use super::light_set::LightSet;
+use super::light_views::LightViews;
 use super::rays::TracedScene;
 use crate::graph::Graph;
 use crate::graph::bindings::{BufferRef, TexelBuffer};
@@ -43,12 +47,23 @@ impl BounceRule {
     }
 }
 
+/// Lights of the light views.
+pub(crate) enum FirstLights<'l> {
+    Made(Rc<AreaLights>),
+    /// Small where samples receive much of them.
+    BySamples {
+        set: &'l LightSet,
+        views: &'l LightViews,
+        rule: LightRule,
+    },
+}
+
 /// Declares the passes. `shift`: from render space to that of rays; `first`: lights of the light views, if there are any. None where nothing is diffuse.
 pub(crate) fn sample_lights(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     shift: [f32; 3],
-    first: Option<&AreaLights>,
+    first: Option<FirstLights<'_>>,
     rule: &BounceRule,
 ) -> Option<AreaLights> {
     let cluster = 1 << (2 * rule.lod);
@@ -87,7 +102,7 @@ fn light(
     graph: &mut Graph<'_>,
     scene: &TracedScene,
     shift: [f32; 3],
-    first: Option<&AreaLights>,
+    first: Option<FirstLights<'_>>,
     space: &Space,
     rule: &BounceRule,
 ) -> Option<Light> {
@@ -95,7 +110,16 @@ fn light(
     if rule.bounces < 2 {
         return lamps;
     }
-    let from_views = first.map(|first| receive(graph, (shift, rule.paper), first, space));
+    let from_views = first.map(|first| {
+        let lights = match first {
+            FirstLights::Made(lights) => lights,
+            FirstLights::BySamples { set, views, rule } => {
+                let of = Samples { samples: space.samples, scene_rays: space.rays.clone(), shift };
+                Rc::new(spread_lights(graph, set, views, &Points::Samples(of), &rule))
+            }
+        };
+        receive(graph, (shift, rule.paper), &lights, space)
+    });
     let mut known = lamps.map(|lamps| (lamps, lamps));
     let mut sees_known = None;
     for number in 2..=rule.bounces {
@@ -115,7 +139,7 @@ fn light(
 fn receive(graph: &mut Graph<'_>, (shift, paper): ([f32; 3], bool), first: &AreaLights, space: &Space) -> Light {
     let arrived = graph.buffer::<[f32; 4]>("bounces.from_views", space.slot_count as usize);
     let loop_steps = graph.traits().loop_steps;
-    for chunk in first.chunks(CacheSight::Rays, LIGHT_STEPS * first.group_lights, loop_steps) {
+    for chunk in first.chunks(CacheSight::Rays, LIGHT_STEPS * first.group_lights, (LANES, loop_steps)) {
         let (first_group, end_group) = (chunk.first_group, chunk.end_group);
         let pass = Receive {
             area_lights: first.group.clone(),

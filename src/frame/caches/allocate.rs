@@ -33,11 +33,11 @@ const ROUNDS: u32 = 2;
 /// The caches of a frame.
 pub(crate) struct Caches {
     pub(crate) group: LightCaches,
-    pub(crate) cascades: types::Cascades,
-    /// Of each the address of its node (glsl/caches/cascades.glsl).
-    pub(crate) nodes: BufferRef<u32>,
-    /// Words 0 to 2: work groups of one cache each; word 3: how many there are.
+    /// Words 0 to 2: work groups of eight caches; word 3: how many there are.
     pub(crate) head: BufferRef<u32>,
+    /// Their addresses (glsl/caches/cascades.glsl), and what these are among.
+    pub(crate) nodes: BufferRef<u32>,
+    pub(crate) cascades: types::Cascades,
     /// Where they lie, in render space.
     pub(crate) positions: BufferRef<[f32; 4]>,
     /// How many there is room for.
@@ -118,7 +118,7 @@ pub(crate) fn allocate(graph: &mut Graph<'_>, frame: &FrameInputs<'_>, places: &
         cache_addresses: addresses.texels(WORD),
         cache_horizons: horizons(graph, rule, (&asks, &nodes), addresses, positions).texels(WORDS),
     };
-    Caches { group, cascades, nodes: nodes.items, head: nodes.head, positions, capacity: nodes.capacity() }
+    Caches { group, head: nodes.head, nodes: nodes.items, cascades, positions, capacity: nodes.capacity() }
 }
 
 /// What the surfaces that ask for each cache have in front of them.

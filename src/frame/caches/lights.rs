@@ -22,6 +22,8 @@ pub(crate) struct LightRule {
     pub(crate) lod: u32,
     /// The area in the disc form is the paper's.
     pub(crate) paper: bool,
+    /// 0: lights lie in the middle of their blocks; else at a place that is drawn by this number.
+    pub(crate) drawn: u32,
     /// Of punctual lights alone, not of samples of emissive surfaces and of the sky.
     pub(crate) punctual: bool,
 }
@@ -52,7 +54,11 @@ pub(crate) struct AreaLights {
 /// Declares the passes.
 pub(crate) fn area_lights(graph: &mut Graph<'_>, set: &LightSet, views: &LightViews, rule: &LightRule) -> AreaLights {
     // Of a frame that has both lists each goes by a name of its own.
-    let level = if rule.punctual { "caches/punctual-lights" } else { "caches/lights" };
+    let level = match (rule.punctual, rule.drawn > 0) {
+        (true, _) => "caches/punctual-lights",
+        (false, true) => "caches/drawn-lights",
+        (false, false) => "caches/lights",
+    };
     let slots = reduced(graph, set, views, rule, level);
     grouped(graph, level, slots, 1 << (2 * rule.lod))
 }
@@ -78,7 +84,12 @@ pub(super) fn reduced(
         slots: slots.write(),
         dropped_texels: dropped.read_write(),
         paper: u32::from(rule.paper),
-        push: ReducePush { slot_count, view_count: slot_views.count() as u32, side: side.cast_signed() },
+        push: ReducePush {
+            slot_count,
+            view_count: slot_views.count() as u32,
+            side: side.cast_signed(),
+            drawn: rule.drawn,
+        },
     };
     let pass = graph.pass(&format!("{level}/reduce"), pass).note("texels a light", u64::from(side * side));
     pass.count("dropped", dropped, 0).threads([slot_count, 1, 1]);

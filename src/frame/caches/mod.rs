@@ -11,8 +11,8 @@ mod spread;
 
 pub(crate) use self::allocate::{Caches, allocate};
 pub(crate) use self::cascades::CascadeRule;
-pub(crate) use self::chunks::Chunk;
+pub(crate) use self::chunks::{Chunk, LANES};
 pub(crate) use self::lights::{AreaLights, LightRule, area_lights, grouped};
 pub(crate) use self::nodes::nodes;
 pub(crate) use self::settings::{CacheSettings, CacheSight, PlaceRule};
-pub(crate) use self::spread::{Picture, spread_lights};
+pub(crate) use self::spread::{Picture, Points, Samples, spread_lights};

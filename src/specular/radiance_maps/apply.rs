@@ -2,11 +2,9 @@
 
 use ash::vk;
 
-use super::maps::Maps;
+use super::choose::Maps;
 use super::options::RadianceMapsOptions;
-use super::tables::tables;
 use crate::frame::caches::Caches;
-use crate::graph::Dependence;
 use crate::graph::bindings::ImageRef;
 use crate::method::FrameCx;
 use crate::shaders::radiance_maps::{Apply, ApplyPush};
@@ -19,14 +17,13 @@ pub(super) fn apply(cx: &mut FrameCx<'_, '_>, caches: &Caches, maps: &Maps, opti
     let weighs_by_rays = cx.frame.caches.weighs_by_rays;
     let (graph, surface) = (&mut *cx.graph, cx.frame.surface);
     let specular = graph.image("radiance_maps.specular", FLOATS, surface.size);
-    let tables = graph.upload("radiance_maps.tables", &tables(options.size), Dependence::NONE);
     let pass = Apply {
         light_caches: caches.group.clone(),
         surface: surface.group.clone(),
         scene_rays,
         map_slots: maps.slots.read(),
         maps: maps.texels.texels(FLOATS),
-        tables: tables.texels(FLOATS),
+        tables: maps.tables.texels(FLOATS),
         reflected: specular.write(),
         horizons: maps.horizons.read(),
         weights: u32::from(weighs_by_rays),

@@ -1,48 +1,19 @@
-//! The maps: which caches have one, the light in them, their levels.
+//! The light in the maps, and their levels.
 
 use ash::vk;
 
-use super::options::RadianceMapsOptions;
-use crate::frame::caches::{AreaLights, CacheSight, Caches};
-use crate::graph::bindings::BufferRef;
+use super::choose::{Maps, choose, texel_count};
+use super::options::{RadianceMapsFill, RadianceMapsOptions};
+use super::search::search;
+use crate::frame::caches::{AreaLights, CacheSight, Caches, LANES};
+use crate::graph::bindings::{BufferRef, TexelBuffer};
 use crate::method::FrameCx;
-use crate::shaders::radiance_maps::{
-    Bound, BoundPush, Choose, ChoosePush, Mips, MipsPush, Write, WriteCones, WriteConesPush, WritePush,
-};
+use crate::shaders::radiance_maps::{Bound, BoundPush, Mips, MipsPush, Write, WriteCones, WriteConesPush, WritePush};
 
 const WORD: vk::Format = vk::Format::R32_UINT;
 const FLOAT: vk::Format = vk::Format::R32_SFLOAT;
-/// Maps that memory is held for at first, and texels.
-const LEAST: usize = 1024;
-const LEAST_TEXELS: usize = 1 << 21;
 /// Steps of an invocation's loops for each light at most, in parts that go to four texels.
 const LIGHT_STEPS: u32 = 82;
-
-/// The maps of a frame.
-#[derive(Clone, Copy)]
-pub(crate) struct Maps {
-    /// Of each cache: the number of its map plus one; 0: it has none.
-    pub(crate) slots: BufferRef<u32>,
-    /// Of each cache: what its surfaces have in common (glsl/radiance_maps/horizon.glsl).
-    pub(crate) horizons: BufferRef<u32>,
-    /// Of each map: its cache.
-    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
-    pub(crate) caches: BufferRef<u32>,
-    /// Words 0 to 2: work groups of one map each; word 3: how many there are.
-    pub(crate) head: BufferRef<u32>,
-    /// Sums of light in whole numbers, three a texel, and what they are counted in.
-    #[cfg_attr(not(test), allow(dead_code, reason = "tests read it back"))]
-    pub(crate) sums: BufferRef<u32>,
-    /// Texels with all levels (glsl/radiance_maps/map.glsl).
-    pub(crate) texels: BufferRef<[f32; 4]>,
-    /// How many there is room for.
-    pub(crate) capacity: u32,
-}
-
-/// Texels of a map with all its levels.
-pub(super) fn texel_count(size: u32) -> u32 {
-    (4 * size * size - 1) / 3
-}
 
 /// Declares the passes.
 pub(super) fn maps(
@@ -51,67 +22,36 @@ pub(super) fn maps(
     caches: &Caches,
     options: &RadianceMapsOptions,
 ) -> Maps {
-    let texels = texel_count(options.size) as usize;
-    let least = LEAST.min(LEAST_TEXELS / texels);
-    let (graph, surface) = (&mut *cx.graph, cx.frame.surface);
-    let slots = graph.buffer::<u32>("radiance_maps.slots", caches.capacity as usize);
-    graph.fill_buffer("specular/radiance-maps/clear-slots", slots, 0);
-    let horizons = graph.buffer::<u32>("radiance_maps.horizons", 3 * caches.capacity as usize);
-    graph.fill_buffer("specular/radiance-maps/clear-horizons", horizons, 0);
-    let list = graph.growing_buffer::<u32>("radiance_maps.caches", least);
-    let head = graph.buffer::<u32>("radiance_maps.head", 4);
-    graph.fill_buffer("specular/radiance-maps/clear-head", head, 0);
-    let capacity = list.count() as u32;
-    let pass = Choose {
-        surface: surface.group.clone(),
-        light_caches: caches.group.clone(),
-        slots: slots.read_write(),
-        map_head: head.read_write(),
-        map_caches: list.start(),
-        horizons: horizons.read_write(),
-        push: ChoosePush { cache_capacity: caches.capacity, capacity },
+    let maps = choose(cx, caches, options);
+    let (head, capacity) = (maps.head, maps.capacity);
+    let (map_bounds, sums, maps_written) = if options.fill == RadianceMapsFill::Search {
+        search(cx, lights, caches, &maps, options);
+        (TexelBuffer::absent(), TexelBuffer::absent(), maps.texels.read_write())
+    } else {
+        let (bounds, sums) = write(cx, lights, caches, &maps, options);
+        (bounds.texels(FLOAT), sums.texels(WORD), maps.texels.start_then_read())
     };
-    let pass = graph.pass("specular/radiance-maps/choose", pass).unordered();
-    pass.count("maps", head, 3).pixels(surface.size);
-    graph.grows(list, head, 3);
-
-    let bounds = graph.buffer::<f32>("radiance_maps.bounds", capacity as usize);
-    let pass = Bound {
-        area_lights: lights.group.clone(),
-        light_caches: caches.group.clone(),
-        map_head: head.texels(WORD),
-        map_caches: list.texels(WORD),
-        bounds: bounds.start(),
-        push: BoundPush { capacity },
-    };
-    graph.pass("specular/radiance-maps/bound", pass).threads_indirect(head, 0);
-
-    let sums = graph.buffer::<u32>("radiance_maps.sums", 3 * texels * capacity as usize);
-    let maps = graph.buffer::<[f32; 4]>("radiance_maps.texels", texels * capacity as usize);
-    let maps = Maps { slots, horizons, caches: list, head, sums, texels: maps, capacity };
-    write(cx, lights, caches, &maps, bounds, options);
     let pass = Mips {
         fill: options.fill_kind(),
         map_side: options.size.cast_signed(),
         map_head: head.texels(WORD),
-        map_bounds: bounds.texels(FLOAT),
-        sums: sums.texels(WORD),
-        maps: maps.texels.start_then_read(),
+        map_bounds,
+        sums,
+        maps: maps_written,
         push: MipsPush { capacity },
     };
     cx.graph.pass("specular/radiance-maps/mips", pass).threads_indirect(head, 0);
     maps
 }
 
-/// Declares the passes that write all lights to all maps.
+/// Declares the passes that write all lights to all maps; returns what bounds the light of each, and sums of it in whole numbers, three a texel.
 fn write(
     cx: &mut FrameCx<'_, '_>,
     lights: &AreaLights,
     caches: &Caches,
     maps: &Maps,
-    bounds: BufferRef<f32>,
     options: &RadianceMapsOptions,
-) {
+) -> (BufferRef<f32>, BufferRef<u32>) {
     let sight = cx.frame.caches.sight;
     let (scene, rays) = cx.cache_rays();
     let voxels = match &sight {
@@ -120,12 +60,24 @@ fn write(
     };
     let surface = cx.frame.surface.group.clone();
     let graph = &mut *cx.graph;
+    let bounds = graph.buffer::<f32>("radiance_maps.bounds", maps.capacity as usize);
+    let pass = Bound {
+        area_lights: lights.group.clone(),
+        light_caches: caches.group.clone(),
+        map_head: maps.head.texels(WORD),
+        map_caches: maps.caches.texels(WORD),
+        bounds: bounds.start(),
+        push: BoundPush { capacity: maps.capacity },
+    };
+    graph.pass("specular/radiance-maps/bound", pass).threads_indirect(maps.head, 0);
+    let texels = 3 * (texel_count(options.size) * maps.capacity) as usize;
+    let map_sums = graph.buffer::<u32>("radiance_maps.sums", texels);
     let loop_steps = graph.traits().loop_steps;
     let (map_side, cached, fill) = (options.size.cast_signed(), u32::from(options.is_cached()), options.fill_kind());
-    for chunk in lights.chunks(sight, LIGHT_STEPS * lights.group_lights, loop_steps) {
+    for chunk in lights.chunks(sight, LIGHT_STEPS * lights.group_lights, (LANES, loop_steps)) {
         let name = chunk.name("specular/radiance-maps/write");
         let (first_group, end_group, capacity) = (chunk.first_group, chunk.end_group, maps.capacity);
-        let sums = if first_group == 0 { maps.sums.start_then_read() } else { maps.sums.read_write() };
+        let sums = if first_group == 0 { map_sums.start_then_read() } else { map_sums.read_write() };
         let (area_lights, light_caches, surface) = (lights.group.clone(), caches.group.clone(), surface.clone());
         let (map_head, map_caches, map_bounds) =
             (maps.head.texels(WORD), maps.caches.texels(WORD), bounds.texels(FLOAT));
@@ -169,4 +121,5 @@ fn write(
             graph.pass(&name, pass).threads_indirect(maps.head, 0);
         }
     }
+    (bounds, map_sums)
 }

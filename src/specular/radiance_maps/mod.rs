@@ -1,19 +1,22 @@
 //! `radiance-maps`: glossy reflections of what lights shine on, from a map of directions at each light cache (Reich 2015, sections 4.3.3 and 4.4).
 //!
 //! 1. Caches are those of `volumes` (`frame/caches/`), made once for both; virtual area lights are blocks of all light views, shared where `volumes` has the same.
-//! 2. `maps.rs`: caches around specular surfaces get maps, which all lights are written to, and these their levels.
+//! 2. `choose.rs`: caches around specular surfaces get maps. `maps.rs`: all lights are written to them, and they get their levels.
 //! 3. `apply.rs`: every pixel looks its eight caches' maps up as wide as its lobe is.
 //!
 //! It finds L D S E alone: light that one diffuse surface scattered. Mirrors in mirrors, caustics in mirrors and further bounces are missing.
 
+mod accumulate;
 mod apply;
+mod choose;
 mod maps;
 pub(crate) mod options;
+mod search;
 mod tables;
 
 use std::rc::Rc;
 
-use self::maps::Maps;
+use self::choose::Maps;
 use self::options::{RadianceMapsFill, RadianceMapsLobe, RadianceMapsLookup, RadianceMapsOptions, RadianceMapsWrite};
 #[cfg(test)]
 pub(crate) use self::tables::direction_of_texel;
@@ -33,6 +36,10 @@ impl Method for RadianceMaps {
 
     fn light_paths(_: &RadianceMapsOptions) -> LightPaths {
         LightPaths { bounces: Some(1), caustics: CausticPaths::None, mirrors: None }
+    }
+
+    fn lead_in(options: &RadianceMapsOptions) -> u32 {
+        options.frames - 1
     }
 
     fn inputs(_: &RadianceMapsOptions) -> Inputs {
@@ -56,6 +63,9 @@ impl Method for RadianceMaps {
     }
 }
 
+/// Frames after which lights are drawn as before.
+const LONGEST_DRAW: u32 = 1 << 15;
+
 /// The slot, and what is behind it.
 pub(crate) struct Made {
     pub(crate) specular: ImageRef,
@@ -70,9 +80,15 @@ pub(crate) struct Made {
 
 /// Declares the method's passes in the order in which they run.
 pub(crate) fn radiance_maps(cx: &mut FrameCx<'_, '_>, options: &RadianceMapsOptions) -> Made {
-    let settings = cx.frame.caches;
+    let mut settings = cx.frame.caches;
+    if options.frames > 1 {
+        settings.lights.drawn = 1 + cx.frame.time.index % LONGEST_DRAW;
+    }
     let (lights, caches) = (cx.area_lights(&settings), cx.caches(&settings));
     let maps = maps::maps(cx, &lights, &caches, options);
+    if options.frames > 1 {
+        accumulate::accumulate(cx, &caches, &maps, options);
+    }
     let specular = apply::apply(cx, &caches, &maps, options);
     Made { specular, maps, lights, positions: caches.positions }
 }
@@ -89,6 +105,7 @@ impl RadianceMapsOptions {
             RadianceMapsFill::None => 0,
             RadianceMapsFill::PullPush => 1,
             RadianceMapsFill::Footprint => 2,
+            RadianceMapsFill::Search => 3,
         }
     }
 

@@ -20,6 +20,8 @@ choices! {
         PullPush = "pull-push",
         /// Lights are written as large as they are.
         Footprint = "footprint",
+        /// Each texel looks for the lights that it shows.
+        Search = "search",
     }
 }
 choices! {
@@ -50,6 +52,8 @@ options! {
     write: RadianceMapsWrite = RadianceMapsWrite::Direct; OptionKind::Choice(RadianceMapsWrite::NAMES), "", "";
     /// What is done about texels that no light is written to.
     fill: RadianceMapsFill = RadianceMapsFill::Footprint, paper = RadianceMapsFill::None; OptionKind::Choice(RadianceMapsFill::NAMES), "", "";
+    /// Maps are means over so many frames, each with lights drawn anew from what the light views see.
+    frames: u32 = 1; OptionKind::Integer(1, 256), "frames", "";
     /// How surfaces reflect what maps show.
     lobe: RadianceMapsLobe = RadianceMapsLobe::Ggx, paper = RadianceMapsLobe::BlinnPhong; OptionKind::Choice(RadianceMapsLobe::NAMES), "", "";
     /// Where a pixel looks its caches' maps up.
