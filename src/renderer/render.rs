@@ -85,6 +85,7 @@ impl Renderer {
     }
 
     /// Whether its methods kept something over the frames so far.
+    #[cfg(feature = "plots")]
     pub(crate) fn keeps_past(&self) -> bool {
         self.store.past() > 0
     }

@@ -46,6 +46,7 @@ mod digest;
 mod editing;
 mod emission;
 mod emission_points;
+#[cfg(feature = "plots")]
 mod emitted;
 mod emitters;
 mod error;
@@ -63,6 +64,7 @@ mod mesh_editing;
 pub(crate) mod rays;
 mod refit;
 mod sampling;
+#[cfg(feature = "plots")]
 mod seen;
 mod shining;
 mod split;
